@@ -109,12 +109,13 @@ template <class Out>
 Layout layout_of(std::string_view text, std::size_t data_bytes, const std::string& file) {
     Layout layout;
     const auto type = after_key(text, "descr", file).substr(0, 5);
+    const std::string bare(type.size() == 5 && type.front() == '\'' ? type.substr(1, 3) : type);  // without its quotes
     if constexpr (std::is_same_v<Out, std::int32_t>) {
-        if (type != "'<i4'") throw bad_input(file, "descr", shown(type), "'<i4' (little-endian int32)");
+        if (type != "'<i4'") throw bad_input(file, "descr", shown(bare), "'<i4' (little-endian int32)");
     } else {
         layout.is_double = type == "'<f8'";
         if (!layout.is_double && type != "'<f4'") {
-            throw bad_input(file, "descr", shown(type), "'<f4' or '<f8' (little-endian float32 or float64)");
+            throw bad_input(file, "descr", shown(bare), "'<f4' or '<f8' (little-endian float32 or float64)");
         }
     }
     if (after_key(text, "fortran_order", file).substr(0, 5) != "False") {

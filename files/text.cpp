@@ -113,4 +113,6 @@ std::string short_number(double value) {
     return buffer.data();
 }
 
+std::string counted(std::int64_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
+
 }  // namespace palpa::files

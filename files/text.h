@@ -1,6 +1,7 @@
 #pragma once
 // Whole files as text; fields of a line; numbers to and from text, independent of the locale.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -38,5 +39,8 @@ std::string number_text(double value);
 
 // Four significant digits, for messages and tables.
 std::string short_number(double value);
+
+// "1 trial", "2 trials": for nouns whose plural ends in s.
+std::string counted(std::int64_t n, const char* noun);
 
 }  // namespace palpa::files

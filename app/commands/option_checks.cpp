@@ -59,6 +59,14 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
     return CLI::Validator(check, listed(words));
 }
 
+CLI::Validator code_of_participant() {
+    const auto strip = [](std::string& text) {
+        if (text.rfind("sub-", 0) == 0) text.erase(0, 4);
+        return std::string();
+    };
+    return CLI::Validator(strip, "");
+}
+
 void refuse_what_is_no_value(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();

@@ -43,9 +43,10 @@ void edit_part(const EditOptions& options) {
         std::printf("%s", files::json_text(report).c_str());
         return;
     }
-    std::printf("%s: %zu operations\n", files::printable(options.output).c_str(), edited.json["shape"].size());
+    const auto operations = static_cast<std::int64_t>(edited.json["shape"].size());
+    std::printf("%s: %s\n", files::printable(options.output).c_str(), files::counted(operations, "operation").c_str());
     for (const files::Json& changed : report["changed_voxels"])
-        std::printf("  %lld voxels changed\n", static_cast<long long>(changed.get<std::int64_t>()));
+        std::printf("  %s changed\n", files::counted(changed.get<std::int64_t>(), "voxel").c_str());
 }
 
 }  // namespace

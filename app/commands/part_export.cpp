@@ -99,7 +99,8 @@ void export_part(const ExportOptions& options) {
         return;
     }
     if (kind == ExportKind::slices) {
-        std::printf("%s: %zu images\n", files::printable(options.output).c_str(), written.size());
+        std::printf("%s: %s\n", files::printable(options.output).c_str(),
+                    files::counted(static_cast<std::int64_t>(written.size()), "image").c_str());
         return;
     }
     for (const parts::ExportedFile& file : written) {

@@ -58,7 +58,16 @@ void tell(const calibration::Recording& recording) {
                  session.points.size(), session.repeat + 1, health.c_str());
 }
 
-void tell_news(bool was_silent, bool was_invalid, const calibration::Recording& recording) {
+void tell_news(bool was_silent, bool was_invalid, bool was_outside, const calibration::Recording& recording) {
+    if (recording.outside > 0 && !was_outside) {
+        const calibration::LevelRange& range = recording.arguments.options.range;
+        std::fprintf(
+            stderr,
+            "\npalpa: warning: found level %s, expected %s to %s: no point follows from it; --level-range says "
+            "what the device can report\n",
+            files::short_number(recording.outside_level).c_str(), files::short_number(range.lowest).c_str(),
+            files::short_number(range.highest).c_str());
+    }
     if (recording.silent && !was_silent) {
         std::fprintf(stderr, "\npalpa: warning: %s has stopped; nothing is captured until it is back\n",
                      recording.sensor->name().c_str());
@@ -96,9 +105,10 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
         const bool more = source->poll(0.005, samples);
         const bool was_silent = recording->silent;
         const bool was_invalid = recording->invalid;
+        const bool was_outside = recording->outside > 0;
         going = calibration::step(samples, *recording) && more;
         if (!recording->sensor) going = take_typed(typed, *recording) && going;
-        tell_news(was_silent, was_invalid, *recording);
+        tell_news(was_silent, was_invalid, was_outside, *recording);
         source->show(*recording);
         if (devices::steady_s() - told_s > 0.1) {
             tell(*recording);

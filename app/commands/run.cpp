@@ -141,6 +141,7 @@ void add_run(CLI::App& app) {
     command
         ->add_option("--participant", options->participant,
                      "participant's code in the names of the log files (default 01)")
+        ->transform(code_of_participant())
         ->needs(log);
     command->add_option("--screenshot", options->screenshot,
                         "write FILE.png of the last frame; headless: of the moment of greatest lag, or of greatest "

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "files/folder_lock.h"
 #include "files/input_error.h"
@@ -60,7 +61,9 @@ void add_study_exclude(CLI::App& study) {
     CLI::App* excluding = study.add_subcommand(
         "exclude", "Leave a trial, or a participant, out of the analysis, with the reason; no data are deleted");
     excluding->add_option("DIR", left_out->directory, "the study's folder")->required();
-    excluding->add_option("--participant", left_out->participant, "code of the participant")->required();
+    excluding->add_option("--participant", left_out->participant, "code of the participant")
+        ->required()
+        ->transform(code_of_participant());
     excluding->add_option("--trial", left_out->trial, "number of the finished trial (default: all of the participant)")
         ->check(CLI::Range(1, 1000000));
     excluding->add_option("--reason", left_out->reason, "why, in words; the report repeats it")->required();
@@ -71,9 +74,11 @@ void add_study_exclude(CLI::App& study) {
         "replace", "Give the place of a participant who dropped out to a new one, who gets the same group and order");
     replacing->add_option("DIR", replaced->directory, "the study's folder")->required();
     replacing->add_option("--participant", replaced->replacement.participant, "code of the participant who dropped out")
-        ->required();
+        ->required()
+        ->transform(code_of_participant());
     replacing->add_option("--by", replaced->replacement.replaced_by, "code of the replacement, who has not begun yet")
-        ->required();
+        ->required()
+        ->transform(code_of_participant());
     replacing->add_option("--reason", replaced->replacement.reason, "why, in words; the report repeats it")->required();
     replacing->callback([replaced] { replace(*replaced); });
 }

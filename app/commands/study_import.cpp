@@ -7,6 +7,7 @@
 #include "app/commands/study.h"
 #include "files/json.h"
 #include "files/regular_file.h"
+#include "files/text.h"
 #include "study/import_bundles.h"
 
 namespace palpa::app {
@@ -35,8 +36,9 @@ void import(const ImportOptions& options) {
     for (const std::string& name : report.grown) std::printf("%s: answers added\n", name.c_str());
     for (const std::string& name : report.passed_over)
         std::printf("%s: a single run, no part of the study; passed over\n", name.c_str());
-    std::printf("%s: %zu files written, %zu there already, %d participants added\n", options.output.c_str(),
-                report.written.size(), report.already_there.size(), report.people_added);
+    std::printf("%s: %s written, %zu there already, %s added\n", options.output.c_str(),
+                files::counted(static_cast<std::int64_t>(report.written.size()), "file").c_str(),
+                report.already_there.size(), files::counted(report.people_added, "participant").c_str());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "app/live/live.h"
 #include "files/json.h"
@@ -37,8 +38,10 @@ void add_study_run(CLI::App& study) {
         "run", "Run a study with people: instructions, trials, breaks, answers; resumes after a crash");
     command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
     command->add_option("--log", options->log, "the study's folder, for the logs of all participants")->required();
-    command->add_option("--participant", options->participant,
-                        "participant's code of letters and digits (default: the app asks for it)");
+    command
+        ->add_option("--participant", options->participant,
+                     "participant's code of letters and digits (default: the app asks for it)")
+        ->transform(code_of_participant());
     command->add_option("--screenshot", options->screenshot, "write a PNG of the last frame");
     command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
         ->check(CLI::Range(0.0, 1e6));

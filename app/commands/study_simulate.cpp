@@ -11,6 +11,7 @@
 #include "app/study/simulate.h"
 #include "files/json.h"
 #include "files/regular_file.h"
+#include "files/text.h"
 
 namespace palpa::app {
 namespace {
@@ -48,11 +49,12 @@ void simulate(const SimulateArguments& arguments) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    std::printf("%s: %d SIMULATED participants, %d trials now, %d already there, in %.1f s\n", arguments.output.c_str(),
-                options.participants, result.trials, result.already_there, result.wall_s);
+    std::printf("%s: %s, %s now, %d already there, in %.1f s\n", arguments.output.c_str(),
+                files::counted(options.participants, "SIMULATED participant").c_str(),
+                files::counted(result.trials, "trial").c_str(), result.already_there, result.wall_s);
     if (result.left_out > 0) {
-        std::printf("  %d trials left out: by hand on a real phantom, or on devices that are not simulated\n",
-                    result.left_out);
+        std::printf("  %s left out: by hand on a real phantom, or on devices that are not simulated\n",
+                    files::counted(result.left_out, "trial").c_str());
     }
     // trials by hand or on arm and pins have no pen
     if (options.samples && result.samples > 0) {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "files/folder_lock.h"
 #include "files/input_error.h"
@@ -229,7 +230,8 @@ void add_study_watch(CLI::App& study) {
     CLI::App* command = study.add_subcommand(
         "watch", "Show the experimenter a running study: participants, their progress, what to present");
     command->add_option("DIR", arguments->directory, "the study's folder")->required();
-    command->add_option("--participant", arguments->participant, "show only this participant");
+    command->add_option("--participant", arguments->participant, "show only this participant")
+        ->transform(code_of_participant());
     command->add_flag("--once", arguments->once, "print once (always so if the output is not a terminal)");
     command->add_flag("--json", arguments->json, "print one JSON object on standard output, once");
     command->callback([arguments] { watch(*arguments); });

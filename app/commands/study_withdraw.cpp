@@ -62,7 +62,9 @@ void add_study_withdraw(CLI::App& study) {
     CLI::App* command = study.add_subcommand(
         "withdraw", "Note that a participant has withdrawn, and whether the data may be used; deletes nothing");
     command->add_option("DIR", options->directory, "the study's folder")->required();
-    command->add_option("--participant", options->participant, "participant's code")->required();
+    command->add_option("--participant", options->participant, "participant's code")
+        ->required()
+        ->transform(code_of_participant());
     command->add_option("--data", options->data, "keep: may be used; leave-out: the analysis leaves them out")
         ->required()
         ->check(one_of({"keep", "leave-out"}));

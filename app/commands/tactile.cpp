@@ -1,15 +1,19 @@
 // palpa tactile: shape display and force arm. `run` presses on a scene's tissue with what its key `tactile` names.
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "app/commands/command_line.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/option_checks.h"
 #include "app/scene_choices.h"
+#include "devices/press_file.h"
 #include "files/cache.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -88,13 +92,32 @@ std::shared_ptr<tactile::TactilePlan> prepare_tactile(const TactileOptions& opti
     return plan;
 }
 
-session::TactileResult run_as_asked(const TactileOptions& options, const std::shared_ptr<tactile::TactilePlan>& plan,
-                                    files::Json& devices) {
+// Where there is no tissue, nothing pushes back.
+void warn_outside(const std::vector<devices::PressRow>& press, const scene::TissueArea& area, const std::string& file) {
+    const auto outside = [&](const devices::PressRow& row) {
+        const Eigen::Vector2d off_m = (Eigen::Vector2d(row.x_m, row.y_m) - area.centre_m).cwiseAbs();
+        return (off_m.array() > 0.5 * area.size_m.array()).any();
+    };
+    const auto count = std::count_if(press.begin(), press.end(), outside);
+    if (count == 0) return;
+    const Eigen::Vector2d low_mm = 1e3 * (area.centre_m - 0.5 * area.size_m);
+    const Eigen::Vector2d high_mm = 1e3 * (area.centre_m + 0.5 * area.size_m);
+    std::fprintf(stderr, "palpa: warning: %s: %td of %zu rows are beside the tissue (x %s to %s, y %s to %s mm)\n",
+                 file.c_str(), count, press.size(), files::short_number(low_mm.x()).c_str(),
+                 files::short_number(high_mm.x()).c_str(), files::short_number(low_mm.y()).c_str(),
+                 files::short_number(high_mm.y()).c_str());
+}
+
+session::TactileResult run_as_asked(const TactileOptions& options, const scene::TissueArea& area,
+                                    const std::shared_ptr<tactile::TactilePlan>& plan, files::Json& devices) {
     session::TactileRunOptions run;
     run.log = options.log;
     run.seed = options.seed;
     const bool rows = holds_rows(options.replay);
-    if (!rows) run.press = devices::read_press(options.replay);
+    if (!rows) {
+        run.press = devices::read_press(options.replay);
+        warn_outside(run.press, area, options.replay);
+    }
     session::choose_input(run.press, *plan);
     tactile::make_table_now(files::cache_folder(), {}, *plan);
     if (!options.log.empty()) fs::create_directories(options.log);
@@ -148,7 +171,7 @@ void run_tactile(const TactileOptions& options) {
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = prepare_tactile(options, scene, scene_plan);
     files::Json devices = files::Json::array();
-    const session::TactileResult result = run_as_asked(options, plan, devices);
+    const session::TactileResult result = run_as_asked(options, scene_plan.area, plan, devices);
     files::Json json{{"scene", scene.name}, {"seed", options.seed}};
     json.update(tactile::figures_json(*plan, result.steps, result.mismatch, result.devices));
     json["devices"] = devices;

@@ -200,8 +200,9 @@ void print_characterised(const files::Json& json) {
             press["force_worst_percent"].get<double>(), press["hysteresis_N"].get<double>(),
             100.0 * press["saturated_share"].get<double>());
     const auto& range = json["reach"]["stiffness_N_per_mm"];
-    std::printf("  at %.3g mm the device can be made between %.3g and %.3g N/mm stiff\n",
-                json["reach"]["depth_mm"].get<double>(), range[0].get<double>(), range[1].get<double>());
+    std::printf(
+        "  at %.3g mm the device, at the pretension for these tissues, can be made between %.3g and %.3g N/mm stiff\n",
+        json["reach"]["depth_mm"].get<double>(), range[0].get<double>(), range[1].get<double>());
     for (const auto& [name, percent] : json["contributions_percent"].items()) {
         if (percent.get<double>() > 0.0) std::printf("  %s alone: %.3g %% rms\n", name.c_str(), percent.get<double>());
     }
@@ -226,6 +227,8 @@ void characterise(const TangibleCharacteriseArguments& arguments) {
             "least one of them");
     if (!arguments.folder.empty()) {
         files::check_output_folder(arguments.folder);
+        files::check_new(fs::path(arguments.folder) /
+                         "characterise.json");  // tables of two runs would stand side by side
         fs::create_directories(arguments.folder);
     }
     const auto model = std::make_shared<const tangible::DeviceModel>(

@@ -133,6 +133,7 @@ void note_step_shown(double now_s, App& app) {
 }
 
 void show(platform::Window& window, App& app, const Canvas& canvas, double dt_s) {
+    app.notices.trial_stopped = trial_stopped(app);
     // with any frame rate, a pen that is gone is noticed within a second
     constexpr double kDevices_s = 0.5;
     if (window.now_s() - app.devices_noted_s >= kDevices_s) {

@@ -229,18 +229,21 @@ void turn_if_shown(platform::Window& window, App& app) {
     if (may_show_maps(app.session.trial)) turn_tissue(window, app);
 }
 
+// Whether the touches of this trial are those on the screen, and there was none.
+bool not_touched(const App& app) { return !felt_elsewhere(app) && !app.session.trial.touched_s; }
+
 bool work_at_stake(const App& app) {
     const StudyRun* study = study_of(app.doing);
     const session::Trial& trial = app.session.trial;
     if (app.trace) return false;
     if (study != nullptr && !palpates(app.doing)) {
+        const bool half_a_pair = at<step::Question>(*study) || (at<step::Present>(*study) && study->interval > 0);
+        if (half_a_pair) return true;
         return app.view.study.step == study->entered && answers_at_stake(app.view.study);
     }
+    if (study != nullptr) return trial_goes_on(*study) && (!not_touched(app) || study->interval > 0);
     return !trial_stopped(app) && !trial.finished && !trial.marks.empty();
 }
-
-// Whether the touches of this trial are those on the screen, and there was none.
-bool not_touched(const App& app) { return !felt_elsewhere(app) && !app.session.trial.touched_s; }
 
 void act(platform::Action action, platform::Window& window, App& app) {
     const StudyRun* study = study_of(app.doing);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "app/screens/screens.h"
 #include "app/screens/words.h"
+#include "files/text.h"
 
 namespace palpa::app {
 namespace {
@@ -28,8 +30,12 @@ const char* name_of_region(int region) {
     return kNames[static_cast<std::size_t>(region)];
 }
 
-// Returns the share of each region that was pressed.
-std::array<double, kRegionCount> examined(const study::Coverage& c, const scene::View& view) {
+struct Examined {
+    std::array<double, kRegionCount> regions{};  // the share of each that was pressed
+    double whole = 0.0;                          // and of all
+};
+
+Examined examined(const study::Coverage& c, const scene::View& view) {
     std::array<double, kRegionCount> cells{};
     std::array<double, kRegionCount> pressed{};
     for (int j = 0; j < c.n_y; ++j) {
@@ -40,21 +46,31 @@ std::array<double, kRegionCount> examined(const study::Coverage& c, const scene:
             if (c.depth_m[static_cast<std::size_t>(j * c.n_x + i)] > 0.0f) pressed[region] += 1.0;
         }
     }
-    for (std::size_t i = 0; i < pressed.size(); ++i) pressed[i] /= std::max(1.0, cells[i]);
-    return pressed;
+    Examined out;
+    for (std::size_t i = 0; i < pressed.size(); ++i) out.regions[i] = pressed[i] / std::max(1.0, cells[i]);
+    out.whole = std::accumulate(pressed.begin(), pressed.end(), 0.0) /
+                std::max(1.0, std::accumulate(cells.begin(), cells.end(), 0.0));
+    return out;
+}
+
+// Below this share of the whole tissue, one region's name would say too little.
+constexpr double kHardly = 0.25;
+
+std::string percent_left(const Examined& shares) {
+    return files::short_number(std::floor(100.0 * (1.0 - shares.whole)));
 }
 
 // The reason that comes first also helps most: tissue that was never touched, then too little force, then judgement.
 const session::Finding kReasons[] = {session::Finding::not_touched, session::Finding::too_light,
                                      session::Finding::not_marked};
 
-std::string advice_on_missed(const stiffnessmaps::Nodule& nodule, session::Finding finding,
-                             const std::array<double, kRegionCount>& shares, const scene::View& view) {
+std::string advice_on_missed(const stiffnessmaps::Nodule& nodule, session::Finding finding, const Examined& shares,
+                             const scene::View& view) {
     if (finding == session::Finding::too_light) return words::filled(words::kAdviceTooLight, {nodule.id});
     if (finding == session::Finding::not_marked) return words::filled(words::kAdviceNotMarked, {nodule.id});
-    constexpr double kHardly = 0.25;
+    if (shares.whole < kHardly) return words::filled(words::kAdviceMostMissed, {nodule.id, percent_left(shares)});
     const int region = region_of(view, {nodule.x_m, nodule.y_m});
-    const bool hardly = shares[static_cast<std::size_t>(region)] < kHardly;
+    const bool hardly = shares.regions[static_cast<std::size_t>(region)] < kHardly;
     return words::filled(hardly ? words::kAdviceNotTouched : words::kAdvicePassed, {nodule.id, name_of_region(region)});
 }
 
@@ -68,7 +84,7 @@ Reviewing review_of(const scene::Plan& plan, const session::Trial& trial, const 
 
 std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
                        const scene::View& view) {
-    const std::array<double, kRegionCount> shares = examined(trial.coverage, view);
+    const Examined shares = examined(trial.coverage, view);
     for (const session::Finding reason : kReasons) {
         for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
             if (debrief.findings[i] == reason) return advice_on_missed(plan.nodules[i], reason, shares, view);
@@ -79,9 +95,11 @@ std::string advice_for(const scene::Plan& plan, const session::Trial& trial, con
         return words::filled(words::kAdviceFalse, {std::to_string(wrong), std::to_string(trial.marks.size())});
     if (plan.nodules.empty()) return words::kAdviceNoNodules;
     constexpr double kUnexamined = 0.1;
-    const auto least = std::min_element(shares.begin(), shares.end());
+    if (shares.whole < kHardly) return words::filled(words::kAdviceMostUnexamined, {percent_left(shares)});
+    const auto least = std::min_element(shares.regions.begin(), shares.regions.end());
     if (*least < kUnexamined)
-        return words::filled(words::kAdviceUnexamined, {name_of_region(static_cast<int>(least - shares.begin()))});
+        return words::filled(words::kAdviceUnexamined,
+                             {name_of_region(static_cast<int>(least - shares.regions.begin()))});
     return words::kAdviceGood;
 }
 

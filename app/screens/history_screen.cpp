@@ -85,7 +85,7 @@ void draw_learning_curve(const PanelArea& whole, const Gui& gui, HistoryView& hi
     const float mm = gui.mm();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const auto count = static_cast<double>(history.trials.size());
-    Plot plot{data_area(whole, mm), 0.5, std::max(count, 5.0) + 0.5, 0.0, 105.0};
+    Plot plot{data_area(whole, mm), 0.5, std::max(count, 5.0) + 0.5, 0.0, 105.0, true};
     draw_plot_axes(plot, {words::kLearningCurve, words::kTrialAxis, words::kFoundAxis}, mm, draw);
     std::vector<ImVec2> tests;
     for (std::size_t k = 0; k < history.trials.size(); ++k) {

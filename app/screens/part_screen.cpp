@@ -241,14 +241,15 @@ void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& 
     ImGui::SameLine();
     if (big_button(words::kMagnify, "", {width_px, kTarget_mm, true, view.magnified, words::kHintMagnify}, gui))
         view.magnified = !view.magnified;
-    if (view.earlier &&
-        big_button(words::kEarlierEdits, "", {0.0f, kTarget_mm, true, false, words::kHintEarlierEdits}, gui))
-        wishes.part = wish_of(PartWish::Kind::earlier);
-    draw_saves(gui, view, wishes);
     const bool changes = tissue.methods.size() > 1 && !shown.state.touch.down;
     if (!tissue.methods.empty() &&
         big_button(words::kNextMethod, words::kKeyMethod, {0.0f, kTarget_mm, changes, false, words::kHintMethod}, gui))
         wishes.action = platform::Action::method;
+    // what comes and goes stands last, so that no button moves under the pen
+    if (view.earlier &&
+        big_button(words::kEarlierEdits, "", {0.0f, kTarget_mm, true, false, words::kHintEarlierEdits}, gui))
+        wishes.part = wish_of(PartWish::Kind::earlier);
+    draw_saves(gui, view, wishes);
 }
 
 void draw_part_header(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {

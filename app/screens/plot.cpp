@@ -47,7 +47,8 @@ void draw_plot_axes(const Plot& plot, const PlotTitles& titles, float mm, ImDraw
                    text.c_str(), draw);
     }
     const double x_span = plot.most_x - plot.least_x;
-    const double x_step = figures::tic_step(x_span, static_cast<double>(a.width() / (5.0f * small_px)));
+    double x_step = figures::tic_step(x_span, static_cast<double>(a.width() / (5.0f * small_px)));
+    if (plot.counts_x) x_step = std::max(1.0, x_step);
     for (double v = first_tick(plot.least_x, x_step); v <= plot.most_x + 1e-9 * x_span; v += x_step) {
         const ImVec2 at = plot.at(v, plot.least_y);
         const std::string text = files::short_number(std::abs(v) < 1e-9 * x_span ? 0.0 : v);

@@ -11,6 +11,7 @@ struct Plot {
     double most_x = 1.0;
     double least_y = 0.0;
     double most_y = 1.0;
+    bool counts_x = false;  // whole numbers along x
     // Values outside are drawn just beyond the frame.
     ImVec2 at(double x, double y) const;
 };

@@ -73,6 +73,7 @@ struct Notices {
     std::string note;                       // good news ("saved ..."), shown for a while
     std::string note_seen;                  // the note that is shown,
     double note_since_s = 0.0;              // and since when
+    bool trial_stopped = false;             // its files can no longer be written: nothing is marked or finished
     bool offer_hold = false;                // offer to press by time to a pen or finger without pressure
     std::string screen_name;                // key of Settings::px_per_mm
     double px_per_mm = platform::kMissing;  // of this screen; NaN: not measured

@@ -118,7 +118,7 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
 // What each part of the model adds to the gap between where the effector is and where it should be.
 void draw_problem(const TangibleShown& soft, float column_px) {
     const TangibleMoment& moment = soft.moment;
-    if (!soft.runs) return;
+    if (!soft.runs || moment.stopped) return;
     soft_line(words::kGap, in_unit(moment.gap_m, 1e3, 3, "mm"), column_px);
     soft_line(words::kGapByActuators, in_unit(moment.by_actuators_m, 1e3, 3, "mm"), column_px);
     std::string row;

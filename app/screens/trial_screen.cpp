@@ -91,8 +91,8 @@ void draw_header(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wi
     one_line(words::filled(words::kSceneAndMode, {mode, shown.scene.name}));
 }
 
-// While the clock is stopped nothing is marked and nothing is finished.
-bool may_act(const Shown& shown) { return !shown.trial.paused_at_s; }
+// While the clock is stopped, or once the trial is, nothing is marked and nothing is finished.
+bool may_act(const Shown& shown) { return !shown.trial.paused_at_s && !shown.notices.trial_stopped; }
 
 void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const int said = shown.trial.marks.empty() ? 0 : shown.trial.marks.back().confidence;
@@ -116,7 +116,9 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
 
 void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
     if (is_interval(shown.doing)) {
-        if (big_button(words::kDone, "", {0.0f, kMark_mm, true, false}, gui)) wishes.action = platform::Action::finish;
+        const bool enter = gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
+        if (big_button(words::kDone, words::kEnter, {0.0f, kMark_mm, true, false}, gui) || enter)
+            wishes.action = platform::Action::finish;  // which says so if nothing was touched yet
         return;
     }
     // a participant reads no keys: nothing on the screen should need an explanation

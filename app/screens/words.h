@@ -152,6 +152,10 @@ inline constexpr const char* kAdviceFalse =
     "{} of {} marks are on no nodule. Cross a place from two sides before you mark it.";
 inline constexpr const char* kAdviceUnexamined =
     "You found every nodule, but the {} was never examined: a nodule there would have been missed.";
+inline constexpr const char* kAdviceMostMissed =
+    "You missed {}: {} % of the tissue was never examined. Go over all of it, in lanes.";
+inline constexpr const char* kAdviceMostUnexamined =
+    "You found every nodule, but {} % of the tissue was never examined: a nodule there would have been missed.";
 inline constexpr const char* kAdviceGood = "You found every nodule, and every mark is on a nodule.";
 inline constexpr const char* kAdviceNoNodules = "This tissue has no nodules, and you marked none.";
 inline constexpr const char* kUpperLeft = "upper left";
@@ -234,7 +238,7 @@ inline constexpr const char* kNoHistory = "No results yet. Each finished trial i
 inline constexpr const char* kHistoryKeptIn = "Kept in {}.";
 inline constexpr const char* kHistoryNotKept = "Results are not kept: see the settings.";
 inline constexpr const char* kDeleteResults = "Delete all results";
-inline constexpr const char* kDeleteAsk = "Delete the results of all {} trials? They cannot be restored.";
+inline constexpr const char* kDeleteAsk = "Delete the results of all trials ({})? They cannot be restored.";
 inline constexpr const char* kDeleteNow = "Delete";
 inline constexpr const char* kCancel = "Cancel";
 inline constexpr const char* kLearningCurve = "Learning curve (filled: test, hollow: practice)";
@@ -305,7 +309,7 @@ inline constexpr const char* kHolds = "At the limit of force, or of the tissue: 
 inline constexpr const char* kStoppedBy = "Stopped: {}. No force, and the pins rest, until you choose Release.";
 inline constexpr const char* kRestsSince = "No force, and the pins rest: {}.";
 inline constexpr const char* kStoppedBanner =
-    "Stopped: {}. No force, and the pins rest. T shows why and releases the devices.";
+    "Stopped: {}. No force, and the pins rest. Press T, or choose Arm and pins in the menu, to release them.";
 inline constexpr const char* kStoppedInStudy = "Stopped: {}. No force, and the pins rest.";
 inline constexpr const char* kStopDevices = "Stop";
 inline constexpr const char* kReleaseDevices = "Release";
@@ -351,7 +355,7 @@ inline constexpr const char* kSoftRests = "The device is relaxed: no trial is ru
 inline constexpr const char* kSoftStoppedBy = "Stopped: {}. The device is relaxed until you choose Release.";
 inline constexpr const char* kSoftRestsSince = "The device is relaxed: {}.";
 inline constexpr const char* kSoftStoppedBanner =
-    "Stopped: {}. The soft device is relaxed. G shows why and releases it.";
+    "Stopped: {}. The soft device is relaxed. Press G, or choose Soft device in the menu, to release it.";
 inline constexpr const char* kSoftStoppedInStudy = "Stopped: {}. The soft device is relaxed.";
 inline constexpr const char* kSoftDeformed = "{}: outline wanted, filled rendered";
 inline constexpr const char* kWantedForce = "Wanted";
@@ -373,7 +377,7 @@ inline constexpr const char* kSolvedIn = "{}: rank {}, {} iterations";
 inline constexpr const char* kNotConverged = "not converged";
 inline constexpr const char* kLimitedBy = "The device cannot render this: {} is at its limit.";
 inline constexpr const char* kTicks = "Ticks";
-inline constexpr const char* kTicksMissed = "{}, {} late, {} saturated, held {} s";
+inline constexpr const char* kTicksMissed = "{} done, {} left out (late), {} saturated, held {} s";
 inline constexpr const char* kPeriod = "Period";
 inline constexpr const char* kPeriodTimes = "{} ms (p99 {}), step {} ms (p99 {})";
 inline constexpr const char* kVirtualTissue = "Virtual tissue";
@@ -517,6 +521,10 @@ inline constexpr const char* kTouchFirst = "Press this surface first, then say t
 inline constexpr const char* kLoseMarks = "End this trial?";
 inline constexpr const char* kLoseMark = "1 mark is not scored yet. This trial cannot be resumed.";
 inline constexpr const char* kLoseManyMarks = "{} marks are not scored yet. This trial cannot be resumed.";
+inline constexpr const char* kLoseTrial = "It is logged as interrupted, and repeated when the study continues.";
+inline constexpr const char* kLosePair = "End in the middle of this pair?";
+inline constexpr const char* kPairRepeated = "The pair was not answered, and is repeated when the study continues.";
+inline constexpr const char* kContinuePair = "Continue the pair";
 inline constexpr const char* kLeaveAnswers = "Close without these answers?";
 inline constexpr const char* kLoseAnswers = "The answers on this page are not saved yet.";
 inline constexpr const char* kBackToAnswers = "Back to the answers";
@@ -593,15 +601,15 @@ inline constexpr const char* kNextParticipant = "Next participant";
 inline constexpr const char* kStudyStopped = "The study has stopped";
 inline constexpr const char* kBreak = "Time for a break";
 inline constexpr const char* kHasTakenPart = "Participant {} has already taken part";
-inline constexpr const char* kTrialsDone = "{} of {} trials are finished. A trial that was interrupted is repeated.";
+inline constexpr const char* kTrialsDone = "Finished trials: {} of {}. A trial that was interrupted is repeated.";
 inline constexpr const char* kNumberFromTo = "Enter a number from {} to {}.";
 inline constexpr const char* kPracticeOf = "Practice, trial {}";
-inline constexpr const char* kThereAre = "There are {} nodules.";
+inline constexpr const char* kThereAre = "Number of nodules: {}.";
 inline constexpr const char* kTimeOf = "{} of {}";
 inline constexpr const char* kTimeOver = "{} of {}: time is up";
 inline constexpr const char* kExperimenter = "Experimenter: trial {}, {}";
-inline constexpr const char* kAllOnTablet = "Participant {}: {} trials, all saved on this tablet.";
-inline constexpr const char* kAllOnDisk = "Participant {}: {} trials, all saved.";
+inline constexpr const char* kAllOnTablet = "Participant {}: all trials are saved on this tablet ({}).";
+inline constexpr const char* kAllOnDisk = "Participant {}: all trials are saved ({}).";
 inline constexpr const char* kRestKept =
     "All trials that were finished before are saved. To continue, start the study again with the same participant "
     "code.";

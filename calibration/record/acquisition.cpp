@@ -74,6 +74,11 @@ void take_levels(const std::vector<platform::Sample>& samples, Recording& record
         platform::move_to(sample, recording.timeline);
         const double t_s = recording.timeline.now_s;
         if (touching || recording.session.touching) recording.touched_s = t_s;
+        const LevelRange& range = recording.arguments.options.range;
+        if (touching && (level < range.lowest || level > range.highest)) {
+            if (recording.outside == 0) recording.outside_level = level;
+            ++recording.outside;
+        }
         take_level(recording.arguments.options, t_s, touching ? level : 0.0, touching, recording.session);
     }
 }
@@ -157,6 +162,7 @@ files::Json result_of(const Recording& recording) {
                      {"relative_half_interval", knowledge.band_error},
                      {"samples", recording.samples},
                      {"below_zero", recording.session.below_zero},
+                     {"outside_range", recording.outside},
                      {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
         json["sensor"] = {{"name", recording.sensor->name()},

@@ -69,6 +69,8 @@ struct Recording {
     bool invalid = false;       // the sensor says that its forces are invalid; nothing is captured until they are valid
     std::int64_t invalids = 0;  // such readings so far
     double invalid_s = -1.0;    // when the last one came
+    std::int64_t outside = 0;   // levels of touches outside arguments.options.range, from which no point can follow
+    double outside_level = 0.0;  // the first of them
 };
 
 // Opens sensor, folder and files. Throws InputError for impossible arguments, std::runtime_error for what cannot be

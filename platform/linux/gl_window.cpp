@@ -9,11 +9,20 @@
 namespace palpa::platform {
 namespace {
 
+bool is_set(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0';
+}
+
+// Nothing names a display: SDL need not look, and libwayland need not complain in words of its own.
+bool names_no_display() {
+    return !is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") && !is_set("XDG_RUNTIME_DIR") && !is_set("SDL_VIDEODRIVER");
+}
+
 std::string no_display_message() {
-    const char* display = std::getenv("DISPLAY");
-    const std::string cause = display == nullptr || *display == '\0'
-                                  ? std::string("DISPLAY is not set")
-                                  : "the X server at DISPLAY=" + std::string(display) + " does not answer";
+    const std::string cause =
+        is_set("DISPLAY") ? "the X server at DISPLAY=" + std::string(std::getenv("DISPLAY")) + " does not answer"
+                          : "DISPLAY is not set";
     return "no display: " + cause + "; palpa run --replay TRACE.tsv --headless works without one";
 }
 
@@ -37,6 +46,7 @@ void end_with_the_terminal() {
 
 void init_video(bool visible) {
     if (visible) {
+        if (names_no_display()) throw std::runtime_error(no_display_message());
         // closing the window only asks to quit; signals and the end of the session do quit
         SDL_SetHint(SDL_HINT_QUIT_ON_LAST_WINDOW_CLOSE, "0");
         if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());

@@ -216,12 +216,23 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     map.source.kind = SourceKind::recorded;
     if (options.progress) options.progress("checking", 0.0);
     choose_tangential(map, measured_tangential, options, file);
+    std::size_t falling = 0, measured = 0;
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-        bool measured = false;
-        for (std::size_t k = 0; k < map.n_depths(); ++k)
-            measured = measured || !std::isnan(map.normal_N[k * map.n_cells() + cell]);
-        report.missing_cells += !measured;
+        float first_N = std::numeric_limits<float>::quiet_NaN(), last_N = first_N;
+        for (std::size_t k = 0; k < map.n_depths(); ++k) {
+            const float force_N = map.normal_N[k * map.n_cells() + cell];
+            if (std::isnan(force_N)) continue;
+            if (std::isnan(first_N)) first_N = force_N;
+            last_N = force_N;
+        }
+        measured += !std::isnan(first_N);
+        falling += last_N < first_N;
     }
+    report.missing_cells += map.n_cells() - measured;
+    if (2 * falling > measured)
+        report.notes.push_back(file + ": the force is less at the greatest depth than at the least in " +
+                               std::to_string(falling) + " of " + std::to_string(measured) +
+                               " cells, and look-up makes such forces constant: are the depths in the right order?");
     if (options.fill) map.filled_normal_N = filled_forces(map);
     add_choice(map.source, "filled", options.fill ? "neighbours" : "none",
                "gaps stay gaps in normal_N.npy; filled_normal_N.npy beside it has none", "--no-fill");

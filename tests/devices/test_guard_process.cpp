@@ -243,10 +243,11 @@ TEST_CASE("guard: unplugged it relaxes and says so; plugged in again it goes on 
     const TemporaryFolder links;
     for (const char* kind : {"framed", "regulator"}) {
         CAPTURE(kind);
-        Wires wires(kind, {"--links", links.path().string(), "--silent-from-s", "3", "--silent-s", "1"});
+        Wires wires(kind, {"--links", links.path().string(), "--silent-s", "1"});
         GuardProcess guard(wires.rig, PALPA_GUARD);
         driven(guard, wires);
         const auto values = halfway(wires.rig);
+        ::kill(wires.simulator->pid(), SIGUSR1);  // unplugged
         CHECK(send_until(guard, values, [](const RigReport& now) { return now.fault == Fault::silence; }));
         CHECK(send_until(guard, values, [](const RigReport& now) { return now.ready; }));  // plugged in again
         CHECK(soon([&] { return wires.relaxed(); }));
@@ -272,9 +273,10 @@ TEST_CASE("guard: a bad line and garbage lead to no target out of range") {
         }));
         CHECK(wires.out_of_range() == "out_of_range 0");
     }
-    Wires wires("framed", {"--garbage-from-s", "1.5", "--garbage-s", "1"});
+    Wires wires("framed", {"--garbage-s", "1"});
     GuardProcess guard(wires.rig, PALPA_GUARD);
     driven(guard, wires);
+    ::kill(wires.simulator->pid(), SIGUSR2);
     CHECK(send_until(guard, halfway(wires.rig), [](const RigReport& now) { return now.fault != Fault::none; }));
     CHECK(soon([&] { return wires.relaxed(); }));
     CHECK(wires.out_of_range() == "out_of_range 0");

@@ -57,3 +57,9 @@ TEST_CASE("text: a failed write leaves the old file and nothing else") {
     CHECK(read_text(folder / "a") == "old");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 2);
 }
+
+TEST_CASE("text: one of a thing is not named in the plural") {
+    CHECK(counted(0, "trial") == "0 trials");
+    CHECK(counted(1, "trial") == "1 trial");
+    CHECK(counted(2, "trial") == "2 trials");
+}

@@ -136,6 +136,20 @@ TEST_CASE("maps import: matrices, one file per depth") {
     CHECK_FALSE(std::filesystem::exists(folder / "n.map/filled_normal_N.npy"));
 }
 
+TEST_CASE("maps import: forces that fall with depth are taken with a warning about the depths' order") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "light.txt", "0.1 0.2\n0.1 0.2\n");
+    write_text_atomically(folder / "deep.txt", "0.2 0.4\n0.2 0.4\n");
+    const auto told = [&](const std::string& files, const char* name) {
+        const Called called = import(folder, files + " --depths-mm 1,2 --spacing-mm 2,2 -o " + name);
+        CAPTURE(called.err);
+        CHECK(called.status == 0);
+        return contains(called.err, "in 4 of 4 cells, and look-up makes such forces constant");
+    };
+    CHECK_FALSE(told("light.txt deep.txt", "a.map"));
+    CHECK(told("deep.txt light.txt", "b.map"));
+}
+
 TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves nothing behind") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "r.csv", odd_table());

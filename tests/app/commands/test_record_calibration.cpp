@@ -233,6 +233,17 @@ TEST_CASE("record: a sensor that is overloaded gives no points, and a warning") 
     CHECK(contains(record.err, "no reading in 5 s that the sensor calls valid"));
 }
 
+TEST_CASE("record: levels outside the range are named, since no point can follow from them") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "levels", "0\n2048\n2048\n2049\n");
+    const Called raw = shell("sleep 2 | " + kRecord + "-o " + (folder / "s").string() + " --sensor typed --levels " +
+                             (folder / "levels").string() + " --json");
+    CAPTURE(raw.err);
+    CHECK(raw.status == 0);
+    CHECK(contains(raw.err, "found level 2048, expected 0 to 1: no point follows from it; --level-range says"));
+    CHECK(parse_json(raw.out, "stdout")["outside_range"] == 3);
+}
+
 TEST_CASE("record: a sensor that sends nothing is told, and no fit of no points is proposed") {
     const TemporaryFolder folder;
     const Called silent = shell(kPen + "--seconds 3 | " + kRecord + "-o " + (folder / "s").string() +

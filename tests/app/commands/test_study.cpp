@@ -638,8 +638,8 @@ TEST_CASE("command study exclude, replace: decisions are written, reported and r
     REQUIRE(
         study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 3 --samples none -o " + log)
             .status == 0);
-    CHECK(study("exclude " + log + " --participant sim0001 --trial 2 --reason 'fire alarm'").status == 0);
-    CHECK(study("replace " + log + " --participant sim0002 --by x1 --reason 'left'").status == 0);
+    CHECK(study("exclude " + log + " --participant sub-sim0001 --trial 2 --reason 'fire alarm'").status == 0);
+    CHECK(study("replace " + log + " --participant sim0002 --by sub-x1 --reason 'left'").status == 0);
     refused("exclude " + log + " --participant sim0001 --trial 2 --reason again", "already, because 'fire alarm'");
     refused("exclude " + log + " --participant sim0009 --reason x", "--participant: found 'sim0009'");
     refused("replace " + log + " --participant sim0001 --by sim0003 --reason x", "--by: found 'sim0003'");

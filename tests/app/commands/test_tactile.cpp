@@ -67,6 +67,15 @@ void check_refused(const std::string& tactile, const std::string& reason, const 
 
 }  // namespace
 
+TEST_CASE("tactile run: a press beside the tissue is warned of") {
+    const SlabFolder slab(R"({"arm": {"device": "arm.json"}, "display": {"device": "pins-6x6.json"}, "leads": "arm"})");
+    files::write_text_atomically(slab.path("p.tsv"), "t_s\tx_mm\ty_mm\tdepth_mm\n0\t20\t20\t0\n0.1\t500\t20\t0\n");
+    const Called called = slab.run("--virtual-time");
+    CAPTURE(called.err);
+    CHECK(called.status == 0);
+    CHECK(contains(called.err, "p.tsv: 1 of 2 rows are beside the tissue (x "));
+}
+
 TEST_CASE("tactile run: the shipped scene and press: the force holds at its limit, and lead halves the mismatch") {
     const TemporaryFolder folder;
     double rms_mm[2] = {0.0, 0.0};

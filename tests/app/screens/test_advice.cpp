@@ -54,12 +54,15 @@ struct Learner {
         over(i, 0.85);
         mark({nodule(i).x_m, nodule(i).y_m});
     }
-    // Presses everywhere, deep enough.
-    void examine() {
+    // Presses everywhere but within 40 mm of a place, deep enough.
+    void examine(const Eigen::Vector2d& but_m = {1.0, 1.0}) {
         for (double y_m = 2e-3; y_m < 0.12; y_m += 4e-3) {
-            sample(Phase::down, {1e-3, y_m}, 0.1);
-            for (double x_m = 1e-3; x_m < 0.119; x_m += 2e-3) sample(Phase::move, {x_m, y_m}, 0.85);
-            sample(Phase::up, {0.119, y_m}, 0.0);
+            for (double x_m = 1e-3; x_m < 0.119; x_m += 2e-3) {
+                if ((Eigen::Vector2d(x_m, y_m) - but_m).norm() < 40e-3) continue;
+                sample(Phase::down, {x_m, y_m}, 0.1);
+                sample(Phase::move, {x_m, y_m}, 0.85);
+                sample(Phase::up, {x_m, y_m}, 0.0);
+            }
         }
     }
     std::string advice() {
@@ -75,11 +78,16 @@ TEST_CASE("advice: what was never touched comes first, named by its place on the
     const Nodule& last = person.nodule(2);
     person.find(0);
     person.over(1, 0.02);
+    // one region's name would say too little
+    CHECK(contains(person.advice(), "You missed " + last.id + ": 9"));
+    CHECK(contains(person.advice(), " % of the tissue was never examined"));
+    person.examine({last.x_m, last.y_m});
     CHECK(contains(person.advice(), "You missed " + last.id + ": the "));
     CHECK(contains(person.advice(), "was never examined"));
     Learner turned(180);
     turned.find(0);
     turned.over(1, 0.02);
+    turned.examine({last.x_m, last.y_m});
     CHECK(turned.advice() != person.advice());  // the same nodule lies on the other side
 }
 

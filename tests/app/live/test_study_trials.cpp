@@ -1,0 +1,100 @@
+// A study's trials in the app: what would be lost by closing asks first. The window is off screen.
+
+#include <SDL.h>
+#include <doctest/doctest.h>
+
+#include "app/study/study_run.h"
+#include "files/text.h"
+#include "tests/app/live/desk.h"
+#include "tests/app/screens/typing.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::app;
+using namespace palpa::files;
+using namespace palpa::platform;
+using namespace palpa::test;
+
+namespace {
+
+struct StudyDesk : Desk {
+    explicit StudyDesk(const TemporaryFolder& folder, const std::string& task) : Desk("") {
+        write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 4, "order": "fixed",
+            "conditions": [{"id": "pad", "modality": "touchpad", "scene": ")" PALPA_SOURCE_DIR
+                                                 R"(/assets/scenes/block-screen.json"}], )" +
+                                                     task + "}");
+        app.keeper = nullptr;
+        RunOptions options;
+        options.protocol = (folder / "p.json").string();
+        options.log = (folder / "log").string();
+        options.participant = "01";
+        load_study(options, app);
+        step(BeginStep{});
+    }
+    StudyRun& run() { return *study_of(app.doing); }
+    void step(std::optional<StudyWish> wish = {}) { follow_study(wish, window, gui, app); }
+    void press() {
+        sample(Phase::down);
+        sample(Phase::up);
+    }
+    void finish() {
+        act(Action::finish, window, app);
+        step();
+    }
+    bool asks_to_quit() {
+        Wishes wishes;
+        wishes.quit = true;
+        carry_out(wishes, window, gui, app);
+        const bool asked = app.asked.has_value();
+        CHECK(app.quit != asked);
+        app.asked.reset();
+        app.quit = false;
+        return asked;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("live: closing in the middle of a pair asks first, and Enter says that the surface is done") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("choice": {"reference_kPa": 10, "comparisons_kPa": [20], "repeats": 2})");
+    REQUIRE(trial_goes_on(desk.run()));
+    CHECK_FALSE(desk.asks_to_quit());  // nothing is lost yet
+    const auto enter = [&] {
+        tap(desk.window, SDLK_RETURN);
+        std::vector<Sample> samples;
+        desk.window.poll(0.0, samples);
+        for (int i = 0; i < 3; ++i) carry_out(desk.show_frame(), desk.window, desk.gui, desk.app);  // down, up
+        desk.step();
+    };
+    desk.show_frame();
+    enter();
+    CHECK(desk.app.notices.note == words::kTouchFirst);
+    CHECK(desk.run().interval == 0);
+    desk.press();
+    CHECK(desk.asks_to_quit());
+    enter();
+    REQUIRE(trial_goes_on(desk.run()));
+    CHECK(desk.run().interval == 1);
+    CHECK(desk.asks_to_quit());  // the first surface was felt
+    desk.press();
+    enter();
+    REQUIRE(at<step::Question>(desk.run()));
+    CHECK(desk.asks_to_quit());
+    desk.show_frame();
+    choose_softer(true, 9.0, desk.run());
+    desk.step();
+    CHECK_FALSE(desk.asks_to_quit());
+}
+
+TEST_CASE("live: closing a study's trial that was touched asks first, with or without marks") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("repeats": 2)");
+    REQUIRE(trial_goes_on(desk.run()));
+    CHECK_FALSE(desk.asks_to_quit());
+    desk.press();
+    CHECK(desk.asks_to_quit());
+    desk.finish();
+    CHECK_FALSE(trial_goes_on(desk.run()));
+    CHECK_FALSE(desk.asks_to_quit());
+}
