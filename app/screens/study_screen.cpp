@@ -121,7 +121,8 @@ void draw_anchors(const study::Item& item, float width_px) {
     ImGui::TextDisabled("%s", item.high.c_str());
 }
 
-void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
+// `focus`: the item's text field takes the keys.
+void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answer) {
     wrapped_text(item.text);
     if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
     constexpr int kMostButtons = 11;
@@ -138,16 +139,23 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
         return draw_anchors(item, one_line ? width_px : ImGui::GetContentRegionAvail().x);
     }
     constexpr float kNumber_mm = 40.0f, kWords_mm = 120.0f;
-    ImGui::SetNextItemWidth(
-        std::min((item.from ? kNumber_mm : kWords_mm) * gui.mm(), ImGui::GetContentRegionAvail().x));
+    const float width_px = std::min((item.from ? kNumber_mm : kWords_mm) * gui.mm(), ImGui::GetContentRegionAvail().x);
+    ImGui::SetNextItemWidth(width_px);
     char text[120];
     std::snprintf(text, sizeof text, "%s", answer.c_str());
     const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
+    if (focus) ImGui::SetKeyboardFocusHere();
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
+    // the field scrolls; what it does not hold can still be read
+    if (ImGui::CalcTextSize(answer.c_str()).x > width_px - 4.0f * gui.mm()) paragraph(answer);
 }
 
-void draw_items(const StudyRun& run, double now_s, Gui& gui, std::vector<std::string>& answers, Wishes& wishes) {
+void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     const std::vector<study::Item>& items = due_items(run);
+    std::vector<std::string>& answers = form.answers;
+    // On a desk the first question takes the keys at once. On a tablet a keyboard would come up over the page.
+    const bool typed = !items.empty() && items[0].choices.empty() && !run.on_tablet;
+    const bool focus = typed && answers.size() != items.size();
     answers.resize(items.size());
     const auto* rated = std::get_if<step::Ratings>(&run.step);
     title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
@@ -159,7 +167,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, std::vector<std::st
     bool good = true;
     for (std::size_t i = 0; i < items.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        draw_item(items[i], gui, answers[i]);
+        draw_item(items[i], focus && i == 0, gui, answers[i]);
         if (!is_answer(items[i], answers[i])) {
             good = false;
             warning_paragraph(
@@ -357,7 +365,7 @@ void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wis
     if (const auto* code = std::get_if<step::Code>(&run.step)) return draw_code(*code, run, now_s, gui, form, wishes);
     if (at<step::Again>(run)) return draw_again(run, gui, wishes);
     if (draw_consent_step(run, gui, wishes)) return;
-    if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, now_s, gui, form.answers, wishes);
+    if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, now_s, gui, form, wishes);
     if (at<step::Instructions>(run)) return draw_instructions(run, gui, wishes);
     if (const auto* device = std::get_if<step::Device>(&run.step)) return draw_device(*device, run, gui, wishes);
     if (at<step::Present>(run)) return draw_present(run, gui, wishes);

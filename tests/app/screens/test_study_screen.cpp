@@ -68,6 +68,21 @@ TEST_CASE("study screen: a second Enter after the screen before does not take th
     CHECK(study_of(desk.app.doing)->code == "01x");
 }
 
+TEST_CASE("study screen: the first question takes the keys at once, and Enter ends its field before it ends the page") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_questions(folder, desk);
+    for (const char digit : {'3', '4'}) type(desk.window, digit);
+    live_frames(desk, 6);
+    CHECK(desk.app.view.study.answers.at(0) == "34");
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK_FALSE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+}
+
 TEST_CASE("study screen: a second Enter after the code does not leave the questions open for good") {
     const TemporaryFolder folder;
     Desk desk("");
