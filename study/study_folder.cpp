@@ -212,7 +212,7 @@ std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial
     if (trial.practice && !pairs && !by_hand) text += "\n\nThis is practice: you see where the harder places are.";
     const double limit_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
     if (limit_s > 0.0 && (!pairs || !condition.scene.empty()))
-        text += "\n\nYou have " + files::short_number(limit_s) + " seconds.";
+        text += "\n\nYou have " + files::short_number(limit_s) + (pairs ? " seconds for each surface." : " seconds.");
     return text;
 }
 

@@ -55,7 +55,13 @@ void print_recorded(const RecordArguments& arguments, const files::Json& result)
                 result["points"].dump().c_str(), result["repeats"].dump().c_str(),
                 result["done"].get<bool>() ? "the curve is known everywhere"
                                            : result["missing"].get_ref<const std::string&>().c_str());
-    if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
+    if (result.contains("sensor")) {
+        std::string health;
+        for (const auto& [what, count] : result["sensor"]["health"].items()) {
+            if (what == "received" || count != 0) health += (health.empty() ? "" : ", ") + count.dump() + " " + what;
+        }
+        std::printf("  sensor      %s\n", health.c_str());
+    }
     if (result["points"] == 0) return;  // nothing to fit yet
     std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n",
                 word(result["file"].get_ref<const std::string&>()).c_str(), level_options(arguments).c_str());

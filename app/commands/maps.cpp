@@ -54,6 +54,13 @@ void print_info(const stiffnessmaps::Map& map, const files::Json& info) {
     std::printf("  source      %s: %s\n", name_of(map.source.kind), map.source.how.c_str());
 }
 
+// Such a map is soft everywhere, since look-up takes no force below zero.
+void warn_of_sign(const stiffnessmaps::Map& map, const std::string& name) {
+    if (stiffnessmaps::force_range(map).highest_N > 0.0) return;
+    std::fprintf(stderr, "palpa: warning: %s: found no force above zero, expected pressing to be positive\n",
+                 name.c_str());
+}
+
 struct InfoOptions {
     std::string map;
     bool json = false;
@@ -67,6 +74,7 @@ void add_info(CLI::App& maps) {
                       "print one JSON object: map.json with shape, missing, force_range_N, ...");
     command->callback([options] {
         const stiffnessmaps::Map map = stiffnessmaps::read_map(options->map);
+        warn_of_sign(map, options->map);
         const files::Json info = map_info(map, stiffnessmaps::make_field(map, {}));
         if (options->json) {
             std::fputs(files::json_text(info).c_str(), stdout);
@@ -86,7 +94,9 @@ struct SampleOptions {
 };
 
 void sample_map(const SampleOptions& options) {
-    const stiffnessmaps::Field field = stiffnessmaps::make_field(stiffnessmaps::read_map(options.map), {});
+    const stiffnessmaps::Map map = stiffnessmaps::read_map(options.map);
+    warn_of_sign(map, options.map);
+    const stiffnessmaps::Field field = stiffnessmaps::make_field(map, {});
     const stiffnessmaps::Place place = stiffnessmaps::place_at(field, {1e-3 * options.x_mm, 1e-3 * options.y_mm});
     stiffnessmaps::DepthAnswer answer;
     if (options.force_N) {

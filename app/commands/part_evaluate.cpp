@@ -56,7 +56,7 @@ files::Json json_of(const parts::MethodResult& result) {
     json["displacement_mm"] = or_null(result.answered, 1e3 * result.displacement_m);
     json["stiffness_N_per_m"] = or_null(result.answered, result.stiffness_N_per_m);
     json["applies"] = result.answered && result.why_not.empty();
-    if (!result.why_not.empty()) json["why_not"] = result.why_not;
+    json["why_not"] = result.why_not.empty() ? files::Json(nullptr) : files::Json(result.why_not);
     json["error_percent"] = result.error ? files::Json(100.0 * *result.error) : files::Json(nullptr);
     json["error_against"] = result.error ? files::Json(result.against) : files::Json(nullptr);
     const bool cells = result.answered && result.method >= Method::voxels;

@@ -34,7 +34,9 @@ bool take_typed(std::string& typed, calibration::Recording& recording) {
     }
     const double force_N = recording.arguments.newton ? shows : shows * calibration::kN_per_gf;
     if (!calibration::take_typed_N(force_N, recording))
-        std::fprintf(stderr, "palpa: not taken: hold the pen still at another level while you type\n");
+        std::fprintf(stderr, "palpa: not taken: %s\n",
+                     recording.session.touching ? "hold the pen still at another level while you type"
+                                                : "press on the surface, and hold the pen still while you type");
     return true;
 }
 

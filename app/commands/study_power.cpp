@@ -104,10 +104,22 @@ void take_part(const PowerArguments& arguments, PowerOptions& options) {
     if (options.output.empty()) throw files::bad_input("--output", "", "nothing", "the folder that all parts share");
 }
 
+// A study that is simulated twice would be counted twice.
+template <class Number>
+void check_once(const char* option, std::vector<Number> numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
+    if (twice == numbers.end()) return;
+    throw files::bad_input(option, "", files::short_number(static_cast<double>(*twice)) + " twice", "each number once");
+}
+
 void measure(const PowerArguments& arguments) {
     PowerOptions options = arguments.options;
     options.output = arguments.output;
     std::sort(options.participants.begin(), options.participants.end());
+    check_once("--participants", options.participants);
+    check_once("--effect", options.effects);
+    check_once("--noise", options.noises);
     take_part(arguments, options);
     if (options.merge && options.output.empty())
         throw files::bad_input("--output", "", "nothing", "the folder whose parts are to be merged");

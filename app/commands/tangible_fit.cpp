@@ -26,13 +26,6 @@ struct TangibleFitArguments {
     bool json = false;
 };
 
-files::Json fit_json(const tangible::DeviceFit& fit) {
-    return {{"modulus_factor", fit.modulus_factor},
-            {"friction_share", fit.friction_share},
-            {"zero_mm", 1e3 * fit.zero_m},
-            {"lag_ms", 1e3 * fit.lag_s}};
-}
-
 // The device file with what was fitted; a mesh file is named as seen from the new place.
 files::Json fitted_device(const TangibleFitArguments& arguments, const tangible::DeviceFit& fit) {
     files::Json json = files::read_json(device_file(arguments.device));

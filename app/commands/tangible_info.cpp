@@ -52,6 +52,12 @@ void print_info(const files::Json& json, const tangible::SoftDevice& device) {
     std::printf("weight %s N%s; laws: %s\n", files::short_number(json["weight_N"].get<double>()).c_str(),
                 device.gravity_m_per_s2 ? "" : " (not simulated: no gravity_m_per_s2)",
                 json["laws"].get<std::string>().c_str());
+    const tangible::DeviceFit& fit = device.fit;
+    if (json["fit"] != fit_json({}))
+        std::printf("fit: modulus %s of the file's, friction %s %% of a cable's tension, zero at %s mm, lag %s ms\n",
+                    files::short_number(fit.modulus_factor).c_str(),
+                    files::short_number(100.0 * fit.friction_share).c_str(),
+                    files::short_number(1e3 * fit.zero_m).c_str(), files::short_number(1e3 * fit.lag_s).c_str());
     for (const auto& warning : json["warnings"])
         std::printf("warning: %s\n", files::printable(warning.get<std::string>()).c_str());
 }
@@ -71,6 +77,7 @@ void run_info(const TangibleInfoOptions& options) {
                      {"laws", laws},
                      {"actuators", actuators_json(device)},
                      {"weight_N", tangible::weight_N(model)},
+                     {"fit", fit_json(device.fit)},
                      {"warnings", tangible::device_warnings(model)}};
     if (options.json)
         std::fputs(files::json_text(json).c_str(), stdout);

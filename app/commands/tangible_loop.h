@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <string>
 
+#include "files/json.h"
+#include "tangible/device_file.h"
+
 namespace CLI {
 class App;
 }
@@ -12,6 +15,9 @@ namespace palpa::app {
 
 // The device file that a person names: a path, or the name of one among the assets.
 std::filesystem::path device_file(const std::string& name);
+
+// The key `fit` of a device file.
+files::Json fit_json(const tangible::DeviceFit& fit);
 
 // --fidelity, --command, --rate-Hz; without the first two, those of the scene if `of_scene`, else step and force.
 void add_loop_options(CLI::App& command, bool of_scene, std::string& fidelity, std::string& kind, double& rate_Hz);

@@ -148,6 +148,13 @@ void run_tangible(const TangibleRunArguments& arguments) {
 
 }  // namespace
 
+files::Json fit_json(const tangible::DeviceFit& fit) {
+    return {{"modulus_factor", fit.modulus_factor},
+            {"friction_share", fit.friction_share},
+            {"zero_mm", 1e3 * fit.zero_m},
+            {"lag_ms", 1e3 * fit.lag_s}};
+}
+
 fs::path device_file(const std::string& name) {
     const bool bare = !name.empty() && !fs::path(name).has_parent_path() && !fs::path(name).has_extension();
     return scene::find_file(bare && !fs::exists(name) ? name + ".json" : name, fs::current_path() / "device",

@@ -162,6 +162,7 @@ void turn_tissue(platform::Window& window, App& app);
 // Turns the tissue if the person has seen where the nodules are, so that the next test has them somewhere else.
 void turn_if_shown(platform::Window& window, App& app);
 // True if the present trial has marks that are not scored yet, or the study's form answers that are not logged yet.
+bool not_touched(const App& app);  // touches of this trial are those on the screen, and there was none
 bool work_at_stake(const App& app);
 // Closes the files of the trial and hands them to the keeper. If they could not be written, stops the trial and returns
 // why, else "".

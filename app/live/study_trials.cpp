@@ -63,15 +63,17 @@ bool may_begin(const App& app) {
     return is_device_here(app) && run.pen != PenVerdict::no_pressure && run.devices_note.empty();
 }
 
-// Interrupts a trial whose device is gone, since it says nothing about the person; the trial is repeated.
-void interrupt_study_trial(platform::Window& window, App& app) {
-    session::note_event("device_gone", now_of(app, window), app.session);
+// Interrupts a trial that says nothing about the person: its device is gone, or nothing was touched in its time. It is
+// repeated.
+void interrupt_study_trial(bool device_gone, platform::Window& window, App& app) {
+    if (device_gone) session::note_event("device_gone", now_of(app, window), app.session);
     app.asked.reset();
     StudyRun& run = *study_of(app.doing);
     const std::string why = close_trial(app);
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
-    wait_for_device(true, run);
+    if (device_gone) return wait_for_device(true, run);
+    repeat_untouched(run);
 }
 
 // Gives the keeper typed trials and answers too; `keeping_since_s` stays set until it has stored them.
@@ -177,8 +179,10 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     }
     if (!trial_goes_on(run)) return;
     if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
-    if (!is_device_here(app) || devices_failed(window.now_s(), app)) return interrupt_study_trial(window, app);
-    if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, window, app);
+    if (!is_device_here(app) || devices_failed(window.now_s(), app)) return interrupt_study_trial(true, window, app);
+    if (now_of(app, window) < trial_ends_s(app)) return;
+    if (not_touched(app)) return interrupt_study_trial(false, window, app);
+    act(platform::Action::finish, window, app);
 }
 
 bool allowed(const platform::Sample& sample, App& app) {

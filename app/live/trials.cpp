@@ -229,7 +229,6 @@ void turn_if_shown(platform::Window& window, App& app) {
     if (may_show_maps(app.session.trial)) turn_tissue(window, app);
 }
 
-// Whether the touches of this trial are those on the screen, and there was none.
 bool not_touched(const App& app) { return !felt_elsewhere(app) && !app.session.trial.touched_s; }
 
 bool work_at_stake(const App& app) {

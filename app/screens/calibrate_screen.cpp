@@ -154,9 +154,9 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     if (!big_button(words::kRecord, words::kEnter, {}, gui) && !entered) return;
     guide.again = entered;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
-    guide.note = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording)
-                     ? words::kRecorded
-                     : words::kNotRecorded;
+    guide.note = !good                                                                           ? words::kNotAForce
+                 : calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording) ? words::kRecorded
+                                                                                                 : words::kNotRecorded;
 }
 
 void form_lines(Gui& gui, CalibrateForm& form) {
@@ -230,6 +230,11 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     value_line(words::kPressNumber, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);
     if (big_button(words::kCreateProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
+    const bool points = !session.points.empty();
+    if (big_button(words::kDropPoint, "", {0.0f, kTarget_mm, points, false}, gui)) {
+        calibration::drop_last_point(recording);
+        guide.note.clear();
+    }
     if (big_button(words::kPauseRecording, "", {}, gui)) wishes.stop = true;
     ImGui::BeginChild("state", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (recording.sensor) {
@@ -261,6 +266,7 @@ void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& 
         refresh_fit(*form.recording, form.guide);
         const GuideWishes asked = draw_guide(*form.recording, gui, form.guide);
         if (asked.keep) keep_profile(form);
+        if (asked.keep && form.recording) form.guide.note = form.problem;  // why there is no profile
         if (asked.stop) stop_recording(form);
         return;
     }

@@ -205,13 +205,15 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
 }
 
 void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
-    const std::string device = name_of(due_condition(run).modality);
+    std::string device = name_of(due_condition(run).modality);
+    std::replace(device.begin(), device.end(), '-', ' ');
     const bool no_pressure = step.connected && run.pen == PenVerdict::no_pressure;
-    title(words::filled(no_pressure ? words::kDeviceNoPressure
-                        : step.here ? words::kDeviceIsBack
-                                    : words::kDeviceMissing,
-                        {device}));
+    const char* text = no_pressure ? words::kDeviceNoPressure
+                       : step.here ? words::kDeviceIsBack
+                                   : words::kDeviceMissing;
+    title(step.untouched && step.here ? words::kNothingTouched : words::filled(text, {device}));
     if (step.left) paragraph(words::kTrialInterrupted);
+    if (step.untouched) paragraph(words::kTimeOverUntouched);
     if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
         warning_paragraph(words::kNeedsPressure);

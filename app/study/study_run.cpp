@@ -326,7 +326,9 @@ void begin_step(StudyRun& run) {
     if (device->here) enter(step::Trial{}, run);  // in a forced choice, the same interval
 }
 
-void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false, left}, run); }
+void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false, left, false}, run); }
+
+void repeat_untouched(StudyRun& run) { enter(step::Device{false, false, false, true}, run); }
 
 void give_feedback(const study::Score& score, StudyRun& run) {
     enter(step::Feedback{score.true_positives, score.true_positives + score.false_negatives, score.false_positives},

@@ -28,6 +28,7 @@ struct Device {              // a trial is due, and its device is not connected,
     bool here = false;       // the trial could begin now; set by the loop
     bool connected = false;  // likewise
     bool left = false;       // it went during the trial, which begins again
+    bool untouched = false;  // the trial's time was over before anything was touched; it begins again
 };
 struct Present {};   // an interval that the experimenter presents
 struct Question {};  // which was softer

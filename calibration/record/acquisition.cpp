@@ -200,13 +200,13 @@ void keep_units(const RecordArguments& arguments) {
     }
 }
 
-// Opens the session of the folder. An earlier one stays as it is unless it is resumed.
+// Opens the session of the folder. An earlier one that has points stays as it is unless it is resumed.
 void open_session(const RecordArguments& arguments, RecordSession& session) {
     const auto file = points_file(arguments);
     if (std::filesystem::exists(file)) {
-        if (!arguments.resume)
-            throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to continue it");
         session.points = read_session(file);
+        if (!arguments.resume && !session.points.empty())
+            throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to continue it");
         for (const CapturedPoint& point : session.points) session.repeat = std::max(session.repeat, point.repeat + 1);
         if (!session.points.empty())
             session.clock_shift_s = std::max(0.0, session.points.back().time_s + 1.0 - devices::steady_s());
@@ -291,11 +291,21 @@ bool step(const std::vector<platform::Sample>& samples, Recording& recording) {
 bool take_typed_N(double force_N, Recording& recording) {
     const RecordOptions& options = recording.arguments.options;
     const double now_s = devices::steady_s();
+    const double shown = recording.arguments.newton ? force_N : force_N / kN_per_gf;
+    recording.raw->write(devices::ForceReading{now_s, platform::kMissing, force_N, shown});
     for (const double ago : {0.95, 0.7, 0.45, 0.2})
         take_force(options, now_s - ago * options.steady_s, force_N, recording.session);
     if (!capture(options, now_s, recording.session)) return false;
     save_points(recording);
     return true;
+}
+
+void drop_last_point(Recording& recording) {
+    RecordSession& session = recording.session;
+    if (session.points.empty()) return;
+    session.points.pop_back();
+    session.last_level = platform::kMissing;  // the same place may be captured again
+    save_points(recording);
 }
 
 std::string advice(const Recording& recording) {

@@ -82,9 +82,12 @@ std::unique_ptr<Recording> open_recording(const RecordArguments& arguments);
 // anything.
 bool step(const std::vector<platform::Sample>& samples, Recording& recording);
 
-// Takes what a scale shows now, while the pen is held still at a level. Returns false, and takes nothing, if it is not
-// held still.
+// Takes what a scale shows now, while the pen is held still at a level. Returns false, and captures no point, if it is not
+// held still; the stream of forces has the number either way.
 bool take_typed_N(double force_N, Recording& recording);
+
+// Takes the last point back, for a number that was typed wrongly; both streams keep what came.
+void drop_last_point(Recording& recording);
 
 // Returns in words which band to press next.
 std::string advice(const Recording& recording);

@@ -3,11 +3,13 @@
 
 #include "accuracy/speed.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::scene;
 using namespace palpa::accuracy;
+using namespace palpa::test;
 
 TEST_CASE("bench speed: every time stands beside its ratio to the machine's unit") {
     const SpeedRow unit = machine_unit(3);
@@ -21,8 +23,8 @@ TEST_CASE("bench speed: every time stands beside its ratio to the machine's unit
     CHECK(row.p99_us > 0.0);
     const Json json = speed_json(unit, {row}, this_machine());
     CHECK(json["unit_us"]["least"] == unit.least_us);
-    CHECK(json["rows"][0]["least_in_units"].get<double>() == doctest::Approx(row.least_us / unit.least_us));
-    CHECK(json["rows"][0]["p99_in_units"].get<double>() == doctest::Approx(row.p99_us / unit.least_us));
+    CHECK(json["rows"][0]["least_in_units"].get<double>() == close_to(row.least_us / unit.least_us));
+    CHECK(json["rows"][0]["p99_in_units"].get<double>() == close_to(row.p99_us / unit.least_us));
     const std::string table = speed_table(unit, {row});
     CHECK(table.find(row.what) != std::string::npos);
     CHECK(table.find(short_number(row.least_us / unit.least_us) + " units") != std::string::npos);

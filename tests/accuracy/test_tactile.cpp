@@ -5,6 +5,7 @@
 #include "tests/close_to.h"
 
 using namespace palpa::accuracy;
+using namespace palpa::test;
 using palpa::test::close_to;
 
 TEST_CASE(

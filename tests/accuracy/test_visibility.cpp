@@ -5,11 +5,13 @@
 #include "accuracy/visibility.h"
 #include "scene/advance.h"
 #include "scene/tissue.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::scene;
 using namespace palpa::accuracy;
+using namespace palpa::test;
 
 namespace {
 
@@ -86,7 +88,7 @@ TEST_CASE("visibility: strokes go through every nodule, and keep away from all o
     int over = 0;
     int beside = 0;
     for (const Stroke& stroke : strokes_over(phantom().with)) {
-        CHECK(stroke.along.norm() == doctest::Approx(1.0));
+        CHECK(stroke.along.norm() == close_to(1.0));
         (stroke.nodule.empty() ? beside : over) += 1;
         if (!stroke.nodule.empty()) continue;
         for (const stiffnessmaps::Nodule& nodule : phantom().with.nodules)
@@ -106,17 +108,17 @@ TEST_CASE("visibility: a stroke presses with the force that was asked for, at th
     const auto samples = samples_of(stroke, scene, phantom().with, state.view, options);
     for (const platform::Sample& sample : samples) {
         advance(scene, phantom().with, sample, state);
-        CHECK(state.contact.normal_N == doctest::Approx(1.3));
+        CHECK(state.contact.normal_N == close_to(1.3));
     }
     CHECK((state.touch.p_m - stroke.through_m - 9e-3 * stroke.along).norm() < 1e-4);
-    CHECK(samples.back().t_host_s == doctest::Approx(24.0 / 20.0).epsilon(0.01));
+    CHECK(samples.back().t_host_s == close_to(24.0 / 20.0).epsilon(0.01));
 }
 
 TEST_CASE("visibility: angles at 40 cm, and what stands in the report") {
-    CHECK(arcmin_of(1e-3, 0.4) == doctest::Approx(8.594).epsilon(1e-3));
+    CHECK(arcmin_of(1e-3, 0.4) == close_to(8.594).epsilon(1e-3));
     VisibilityOptions options;
-    CHECK(arcmin_of(kIsSeen, options) == doctest::Approx(12.89).epsilon(1e-3));
-    CHECK(arcmin_of(kMayBeSeen, options) == doctest::Approx(1.289).epsilon(1e-3));
+    CHECK(arcmin_of(kIsSeen, options) == close_to(12.89).epsilon(1e-3));
+    CHECK(arcmin_of(kMayBeSeen, options) == close_to(1.289).epsilon(1e-3));
     Seen a, b, beside;
     a.stroke.nodule = "A";
     a.motion_arcmin = 13.0;
@@ -134,7 +136,7 @@ TEST_CASE("visibility: angles at 40 cm, and what stands in the report") {
     CHECK(json["nodules"][1]["visible"] == false);
     CHECK(json["nodules"][1]["lag_mm"] == 1.0);
     CHECK(json["beside_arcmin"] == 1.0);
-    CHECK(json["beside_lag_mm"] == doctest::Approx(0.2));
+    CHECK(json["beside_lag_mm"] == close_to(0.2));
     CHECK(json["beside_visible"] == false);
     beside.motion_arcmin = 1.3;
     CHECK(visibility_json({a, beside}, options)["beside_visible"] == true);

@@ -2,6 +2,7 @@
 
 #include "avatar/delay.h"
 #include "tests/avatar/test_tissues.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::avatar;
@@ -82,8 +83,8 @@ TEST_CASE("delay: peaks over a round bump") {
             peak.lag_m.x() = std::max(peak.lag_m.x(), out.lag_m.x());
         }
         CAPTURE(row.speed);
-        CHECK(peak.tau_s == doctest::Approx(1e-3 * row.tau_ms).epsilon(2e-3));
-        CHECK(peak.lag_m.x() == doctest::Approx(1e-3 * row.lag_mm).epsilon(2e-3));
+        CHECK(peak.tau_s == close_to(1e-3 * row.tau_ms).epsilon(2e-3));
+        CHECK(peak.lag_m.x() == close_to(1e-3 * row.lag_mm).epsilon(2e-3));
     }
 }
 

@@ -6,6 +6,7 @@
 #include "avatar/display_ratio.h"
 #include "avatar/path.h"
 #include "tests/avatar/test_tissues.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::avatar;
@@ -85,7 +86,7 @@ TEST_CASE(
         CHECK(limited.state.skipped_stations ==
               static_cast<std::int64_t>(free.pulls.size()) - static_cast<std::int64_t>(limited.pulls.size()));
         CHECK(limited.state.skipped_stations > 0);
-        CHECK(way_m(limited) == doctest::Approx(way_m(free)).epsilon(0.02));  // one dead band at each turn
+        CHECK(way_m(limited) == close_to(way_m(free)).epsilon(0.02));  // one dead band at each turn
         CHECK(limited.state.carry_m == free.state.carry_m);
         CHECK((limited.state.rope_m - free.state.rope_m).norm() < 1e-12);  // the last station of a sample stays
         CHECK(free.state.skipped_stations == 0);
@@ -108,8 +109,7 @@ TEST_CASE("path: the stations that are left lie evenly") {
     walk_to({}, StationLimit{4000.0, 4, 64}, touch(0.001, 0.00101), rise, note, state);  // 20 stations, 4 allowed
     REQUIRE(at_m.size() == 4);
     CHECK(state.skipped_stations == 16);
-    for (std::size_t i = 0; i < 4; ++i)
-        CHECK(at_m[i] == doctest::Approx((static_cast<double>(i) + 1.0) * 2.5e-4 / 1.01));
+    for (std::size_t i = 0; i < 4; ++i) CHECK(at_m[i] == close_to((static_cast<double>(i) + 1.0) * 2.5e-4 / 1.01));
 }
 
 TEST_CASE("path: samples of a burst have the least number of stations each, whatever their times say") {

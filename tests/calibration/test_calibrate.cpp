@@ -3,6 +3,7 @@
 #include <random>
 
 #include "calibration/calibrate.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -70,7 +71,7 @@ TEST_CASE("calibrate: left-out points choose the law that made the data, and its
     const Calibration a = calibrate(power, {});
     CHECK(a.profile.curve.model == CurveModel::power);
     CHECK(a.chosen.error == ErrorModel::log);
-    CHECK(a.profile.curve.b == doctest::Approx(1.6).epsilon(0.01));
+    CHECK(a.profile.curve.b == close_to(1.6).epsilon(0.01));
     const Calibration b = calibrate(loud, {});
     CHECK(b.chosen.error == ErrorModel::newton);
     CHECK(b.profile.curve.model != CurveModel::power);
@@ -135,13 +136,13 @@ TEST_CASE("calibrate: the loop between pressing and releasing is reported, by ph
     }
     const Calibration by_phase = calibrate(rows, {});
     REQUIRE(by_phase.hysteresis);
-    CHECK(by_phase.hysteresis->median_relative == doctest::Approx(0.2 / 1.1).epsilon(0.02));
+    CHECK(by_phase.hysteresis->median_relative == close_to(0.2 / 1.1).epsilon(0.02));
     CHECK(any_with(by_phase.warnings, "more force than releasing"));
     CalibrateOptions keep;
     keep.remove_lag = false;
     const Calibration by_time = calibrate(waves(0.0, 0.2, random), keep);
     REQUIRE(by_time.hysteresis);
-    CHECK(by_time.hysteresis->median_relative == doctest::Approx(0.2 / 1.1).epsilon(0.15));
+    CHECK(by_time.hysteresis->median_relative == close_to(0.2 / 1.1).epsilon(0.15));
 }
 
 TEST_CASE("calibrate: repeats that drift are told") {
@@ -151,7 +152,7 @@ TEST_CASE("calibrate: repeats that drift are told") {
     }
     const Calibration calibration = calibrate(rows, {});
     REQUIRE(calibration.drift);
-    CHECK(calibration.drift->per_repeat == doctest::Approx(0.04).epsilon(0.15));
+    CHECK(calibration.drift->per_repeat == close_to(0.04).epsilon(0.15));
     CHECK(calibration.by_repeats);
     CHECK(any_with(calibration.warnings, "repeats differ by"));
 }
@@ -165,9 +166,9 @@ TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
         add_row(0.7 * (1.0 - std::exp(-F / 0.4)), F, 0, finger);
     }
     const Calibration calibration = calibrate(pen, {});
-    CHECK(calibration.ends.saturation_N == doctest::Approx(2.8).epsilon(0.01));
+    CHECK(calibration.ends.saturation_N == close_to(2.8).epsilon(0.01));
     CHECK(any_with(calibration.warnings, "N this pen reports full pressure"));
-    CHECK(calibration.force_at_full_N == doctest::Approx(2.8).epsilon(0.02));
+    CHECK(calibration.force_at_full_N == close_to(2.8).epsilon(0.02));
     CalibrateOptions options;
     options.level = LevelField::contact_area;
     const Calibration area = calibrate(finger, options);

@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "calibration/curve.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::calibration;
+using namespace palpa::test;
 
 namespace {
 
@@ -79,7 +81,7 @@ TEST_CASE("curve: a cubic goes through its knots, rises between them and goes on
         const Curve curve = random_cubic(random);
         CAPTURE(trial);
         for (std::size_t i = 0; i < curve.knot_level.size(); ++i) {
-            CHECK(value_N(curve, curve.knot_level[i]) == doctest::Approx(curve.knot_N[i]).epsilon(1e-14));
+            CHECK(value_N(curve, curve.knot_level[i]) == close_to(curve.knot_N[i]).epsilon(1e-14));
         }
         const double end = curve.knot_level.back() + 0.5;
         double before = value_N(curve, 0.0);

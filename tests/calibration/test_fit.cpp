@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "calibration/fit.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::calibration;
+using namespace palpa::test;
 
 namespace {
 
@@ -81,8 +83,8 @@ TEST_CASE("fit: power and exponential with offset come back from exact points, b
         points.force_N = 2.5 * (points.level / 8191.0).pow(1.7);
         const auto power = fit_curve(points, options_of(CurveModel::power, error, Robust::huber, 8191.0));
         REQUIRE(power);
-        CHECK(power->b == doctest::Approx(1.7).epsilon(1e-12));
-        CHECK(value_N(*power, 8191.0) == doctest::Approx(2.5).epsilon(1e-12));
+        CHECK(power->b == close_to(1.7).epsilon(1e-12));
+        CHECK(value_N(*power, 8191.0) == close_to(2.5).epsilon(1e-12));
         for (const double bend : {5.0, 0.05, -0.05, -5.0}) {
             CAPTURE(bend);
             const double a_N = bend > 0.0 ? 0.3 : -0.3;
@@ -92,9 +94,9 @@ TEST_CASE("fit: power and exponential with offset come back from exact points, b
             REQUIRE(offset);
             // a nearly straight line tells a, b and offset apart only to 1e-16 / bend^2
             const double tolerance = 1e-14 / (bend * bend) + 1e-12;
-            CHECK(offset->a_N == doctest::Approx(a_N).epsilon(tolerance));
-            CHECK(offset->b == doctest::Approx(bend / 8191.0).epsilon(tolerance));
-            CHECK(offset->offset_N == doctest::Approx(0.5).epsilon(tolerance));
+            CHECK(offset->a_N == close_to(a_N).epsilon(tolerance));
+            CHECK(offset->b == close_to(bend / 8191.0).epsilon(tolerance));
+            CHECK(offset->offset_N == close_to(0.5).epsilon(tolerance));
         }
     }
 }
@@ -160,8 +162,8 @@ TEST_CASE("fit: a cubic takes the medians of its bins, and only rises") {
     const auto pooled = fit_cubic(points, cubic_bins(points, 0));
     REQUIRE(pooled);
     REQUIRE(pooled->knot_level.size() == 3);
-    CHECK(pooled->knot_level[1] == doctest::Approx(0.5));
-    CHECK(pooled->knot_N[1] == doctest::Approx(0.4));
+    CHECK(pooled->knot_level[1] == close_to(0.5));
+    CHECK(pooled->knot_N[1] == close_to(0.4));
 }
 
 TEST_CASE("hard case 3: points that determine no rising curve give none, never a parameter that is not a number") {

@@ -3,6 +3,7 @@
 
 #include "calibration/points.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -28,7 +29,7 @@ std::string refusal_of_points(const std::string& text, const ReadOptions& option
 TEST_CASE("points: columns by name, gram-force becomes newtons") {
     const CalibrationRows rows =
         read("repeat,force_gf,level,phase,time_s\nb,10,0.1,press,1\nb,100,0.5,press,2\na,200,0.9,release,0\n");
-    CHECK(rows.force_N[1] == doctest::Approx(0.980665));
+    CHECK(rows.force_N[1] == close_to(0.980665));
     CHECK(rows.repeat == std::vector<int>{0, 0, 1});
     CHECK(rows.phase[2] == PressPhase::release);
     CHECK(rows.line[2] == 4);
@@ -101,9 +102,9 @@ TEST_CASE("points: silence below activation and the plateau above saturation are
         rows.line.push_back(static_cast<std::size_t>(i + 2));
     }
     const Ends ends = ends_of(rows, {0.0, 1.0});
-    CHECK(ends.activation_N == doctest::Approx(0.06));
-    CHECK(ends.saturation_N == doctest::Approx(2.8));
-    CHECK(ends.above_saturation_N == doctest::Approx(4.0));
+    CHECK(ends.activation_N == close_to(0.06));
+    CHECK(ends.saturation_N == close_to(2.8));
+    CHECK(ends.above_saturation_N == close_to(4.0));
     const FitPoints points = fit_points(rows, {0.0, 1.0}, ends);
     CHECK(points.level.size() > 270);
     CHECK(points.level.size() < 285);  // the silent and the saturated rows are gone but for the nearest

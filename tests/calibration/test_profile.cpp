@@ -3,10 +3,12 @@
 
 #include "calibration/profile.h"
 #include "calibration/profile_file.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::calibration;
+using namespace palpa::test;
 
 namespace {
 
@@ -27,8 +29,8 @@ TEST_CASE("profile: the paper's three curves at both ends of their range") {
         CAPTURE(row.file);
         const Profile profile = shipped(row.file);
         std::int64_t clamped = 0;
-        CHECK(force_N(profile, profile.level_lowest, clamped) == doctest::Approx(row.lowest_N).epsilon(1e-5));
-        CHECK(force_N(profile, profile.level_highest, clamped) == doctest::Approx(row.highest_N).epsilon(1e-4));
+        CHECK(force_N(profile, profile.level_lowest, clamped) == close_to(row.lowest_N).epsilon(1e-5));
+        CHECK(force_N(profile, profile.level_highest, clamped) == close_to(row.highest_N).epsilon(1e-4));
         CHECK(clamped == 0);
     }
 }
@@ -59,7 +61,7 @@ TEST_CASE("profile: each reads its own field of a sample") {
     sample.height_px = 80;
     CHECK(level_of(shipped("s-pen.json"), sample) == 0.5);
     CHECK(level_of(shipped("bamboo.json"), sample) == 512);
-    CHECK(level_of(shipped("xoom-finger.json"), sample) == doctest::Approx(3.14159265 / 4 * 8000 / 8000));
+    CHECK(level_of(shipped("xoom-finger.json"), sample) == close_to(3.14159265 / 4 * 8000 / 8000));
     sample.width_px = kMissing;
     CHECK(std::isnan(level_of(shipped("xoom-finger.json"), sample)));
 }
@@ -72,8 +74,8 @@ TEST_CASE("profile: a level that is written into a sample reads back, whatever t
         const double level = profile.level == LevelField::pressure_raw ? whole : 0.4;
         Sample sample;
         set_level(profile, level, sample);
-        CHECK(level_of(profile, sample) == doctest::Approx(level).epsilon(1e-12));
+        CHECK(level_of(profile, sample) == close_to(level).epsilon(1e-12));
         CHECK(sample.pressure ==
-              doctest::Approx((level - profile.level_lowest) / (profile.level_highest - profile.level_lowest)));
+              close_to((level - profile.level_lowest) / (profile.level_highest - profile.level_lowest)));
     }
 }

@@ -4,6 +4,7 @@
 
 #include "calibration/record_session.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -47,9 +48,9 @@ TEST_CASE("record: a point where both signals hold still, one for each place, an
     std::mt19937_64 random(1);
     const double t_s = press(options, {0.2, 0.5, 0.9}, 10.0, 1.0, random, session);
     REQUIRE(session.points.size() == 3);
-    CHECK(session.points[1].level == doctest::Approx(0.5));
-    CHECK(session.points[1].force_N == doctest::Approx(0.1 * std::exp(1.75)).epsilon(0.005));
-    CHECK(session.points[1].time_s - 10.0 == doctest::Approx(0.6 + 0.2 + options.steady_s).epsilon(0.02));
+    CHECK(session.points[1].level == close_to(0.5));
+    CHECK(session.points[1].force_N == close_to(0.1 * std::exp(1.75)).epsilon(0.005));
+    CHECK(session.points[1].time_s - 10.0 == close_to(0.6 + 0.2 + options.steady_s).epsilon(0.02));
     CHECK(session.points[2].phase == PressPhase::press);
     press(options, {0.9, 0.3}, t_s, 1.0, random, session);
     REQUIRE(session.points.size() == 5);
@@ -91,10 +92,10 @@ TEST_CASE("record: the zero is 0.4 s of rest, not a hand that already leans on t
     for (int i = 0; i < 30; ++i, t_s += 0.01) take_rest(options, t_s, 2.1, session);
     CHECK(std::isnan(session.zero_N));  // 0.3 s only
     for (int i = 0; i < 40; ++i, t_s += 0.01) take_rest(options, t_s, 2.1 + 0.01 * normal(random), session);
-    CHECK(session.zero_N == doctest::Approx(2.1).epsilon(0.003));
+    CHECK(session.zero_N == close_to(2.1).epsilon(0.003));
     const double before_N = session.zero_N;
     for (int i = 0; i < 300; ++i, t_s += 0.01) take_rest(options, t_s, 2.4 + 0.002 * i, session);  // 0.2 N/s
-    CHECK(session.zero_N == doctest::Approx(before_N).epsilon(0.003));
+    CHECK(session.zero_N == close_to(before_N).epsilon(0.003));
 }
 
 TEST_CASE("record: it is enough when every band is known to 5 %, and until then it says what is missing") {

@@ -4,6 +4,7 @@
 
 #include "desk/pairing.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -37,7 +38,7 @@ TEST_CASE("pairing: a thousand wrong codes are few tries, and the right one wait
     }
     CHECK(compared == 5);
     CHECK(locked == 995);
-    CHECK(until_s == doctest::Approx(30.04));
+    CHECK(until_s == close_to(30.04));
     CHECK(guard.try_code("123456", "10.0.0.7", until_s - 0.1).answer == Answer::locked);
     CHECK(guard.try_code("123456", "10.0.0.8", 10.0).answer == Answer::right);  // another address
     CHECK(guard.try_code("123456", "10.0.0.7", until_s + 0.1).answer == Answer::right);
@@ -54,7 +55,7 @@ TEST_CASE("pairing: lock-outs grow up to an hour") {
         REQUIRE(result.lock_began);
         CHECK(result.wait_s >= before_s - 1e-6);
         CHECK(result.wait_s <= 3600.0 + 1e-6);
-        if (i == 1) CHECK(result.wait_s == doctest::Approx(60.0));
+        if (i == 1) CHECK(result.wait_s == close_to(60.0));
         before_s = result.wait_s;
         now_s += result.wait_s + 0.001;
     }

@@ -5,6 +5,7 @@
 
 #include "devices/alicat.h"
 #include "devices/simulators/alicat_units.h"
+#include "tests/close_to.h"
 #include "tests/devices/wires.h"
 
 using namespace palpa::devices;
@@ -94,7 +95,7 @@ TEST_CASE("alicat: the simulated unit echoes what it took, keeps it, and refuses
     CHECK(units.unit[1].set_point == 0.0);
     for (int i = 0; i < 3000; ++i) advance(1e-3, units);  // in silence
     CHECK(units.unit[0].set_point == 5.44);
-    CHECK(units.unit[0].pressure == doctest::Approx(5.44));
+    CHECK(units.unit[0].pressure == close_to(5.44));
     CHECK(answered(encode_alicat_poll('C'), units).empty());
     take_bytes(bytes_in("A\r"), units);
     take_bytes(bytes_in("B\r"), units);  // before the answer

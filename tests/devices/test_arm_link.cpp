@@ -11,12 +11,14 @@
 #include "devices/simulators/arm_plant.h"
 #include "devices/simulators/process.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::devices;
 using namespace palpa::devices::simulators;
+using namespace palpa::test;
 
 namespace {
 
@@ -244,8 +246,8 @@ TEST_CASE("arm port: the sensor's zero is taken while nobody presses, then it fe
         if (zeroed) felt_N = feedback.sensor_N;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    CHECK(felt_N == doctest::Approx(3.0).epsilon(0.2));
-    CHECK(feedback.x_m == doctest::Approx(0.05));
+    CHECK(felt_N == close_to(3.0).epsilon(0.2));
+    CHECK(feedback.x_m == close_to(0.05));
 }
 
 TEST_CASE("simulated arm: without a command for 100 ms its motor rests, whoever was killed") {
@@ -284,7 +286,7 @@ TEST_CASE("simulated arm: it sticks below its static friction, and slides above 
         command(push(0.0), slides);
         advance(0.001, slides);
     }
-    CHECK(slides.velocity_m_per_s == doctest::Approx(0.3).epsilon(0.01));
+    CHECK(slides.velocity_m_per_s == close_to(0.3).epsilon(0.01));
 }
 
 TEST_CASE("simulated arm: seeds scatter every parameter by at most a fifth; the same seed is the same arm") {

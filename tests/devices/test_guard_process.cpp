@@ -16,6 +16,7 @@
 #include "devices/shape_guard.h"
 #include "devices/simulators/process.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/devices/wires.h"
 #include "tests/temporary_folder.h"
 
@@ -167,10 +168,10 @@ TEST_CASE("guard: the actuators of every protocol go where they are told, and th
         CHECK(report.displacement_m < 0.0061);
         CHECK(report.fault == Fault::none);
         CHECK(report.line[0].errors == 0);
-        CHECK(report.sent[0] == doctest::Approx(halfway(wires.rig)[0]));
+        CHECK(report.sent[0] == close_to(halfway(wires.rig)[0]));
         if (std::string(kind) == "regulator") {
             for (std::size_t i = 0; i < 3; ++i)
-                CHECK(report.measured[i] == doctest::Approx(halfway(wires.rig)[i]).epsilon(0.05));
+                CHECK(report.measured[i] == close_to(halfway(wires.rig)[i]).epsilon(0.05));
         }
         CHECK(wires.out_of_range() == "out_of_range 0");
     }

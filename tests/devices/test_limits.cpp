@@ -6,9 +6,11 @@
 #include <random>
 
 #include "devices/limits.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa::devices;
+using namespace palpa::test;
 
 namespace {
 
@@ -56,7 +58,7 @@ TEST_CASE("guard: nothing changes faster than its slew, also after a pause of th
     const Limits limits;
     double now_s = 0.0;
     Guard guard = settled(limits, force_of(0.0), now_s);
-    CHECK(one_tick(limits, now_s += 1e-3, force_of(2.5), guard).force_N == doctest::Approx(1.0));
+    CHECK(one_tick(limits, now_s += 1e-3, force_of(2.5), guard).force_N == close_to(1.0));
     Guard paused = settled(limits, force_of(0.0), now_s);
     Limits slow;
     slow.force_slew_N_per_s = 10.0;
@@ -131,7 +133,7 @@ TEST_CASE("guard: after 100 ms of silence all rests; when the device is back, it
     CHECK(guard.fault == Fault::silence);
     guard_pins(limits, heights_m, guard);
     CHECK(heights_m[1] == limits.pin_rest_m);
-    CHECK(one_tick(limits, now_s += 1e-3, force_of(2.0), guard).force_N == doctest::Approx(1.0));  // by its slew
+    CHECK(one_tick(limits, now_s += 1e-3, force_of(2.0), guard).force_N == close_to(1.0));  // by its slew
     CHECK(guard.fault == Fault::none);
 }
 
@@ -146,7 +148,7 @@ TEST_CASE("guard: F12 stops everything until a person lets it go on; a later fau
     CHECK(guard.fault == Fault::stopped);
     release(guard);
     CHECK(one_tick(limits, now_s += 10.0, force_of(2.0), guard).force_N == 0.0);  // the first tick knows no time
-    CHECK(one_tick(limits, now_s += 1e-3, force_of(2.0), guard).force_N == doctest::Approx(1.0));
+    CHECK(one_tick(limits, now_s += 1e-3, force_of(2.0), guard).force_N == close_to(1.0));
 }
 
 TEST_CASE("guard: an arm that is where it cannot be stops for good; one that is too fast, while it is") {
@@ -197,7 +199,7 @@ TEST_CASE("guard: a high-impedance arm starts from where it is") {
     command.depth_m = 0.0;
     begin_tick(limits, 1.001, true, &in, guard);
     guard_arm(limits, command, guard);
-    CHECK(command.depth_m == doctest::Approx(0.02 - 1e-3 * limits.depth_slew_m_per_s));
+    CHECK(command.depth_m == close_to(0.02 - 1e-3 * limits.depth_slew_m_per_s));
     command.depth_m = 9.0;
     for (int i = 2; i < 1000; ++i) {
         begin_tick(limits, 1.0 + 1e-3 * i, true, &in, guard);
@@ -258,7 +260,7 @@ TEST_CASE("limits: the scene's force limit and the arm's, the lower one; pins ma
     PinDevice pins;
     CHECK(limits_of(&arm, &pins, 2.5).force_N == 2.5);
     CHECK(limits_of(&arm, &pins, 25.0).force_N == 10.0);
-    CHECK(limits_of(nullptr, &pins, 2.5).pin_slew_m_per_s == doctest::Approx(0.12));
+    CHECK(limits_of(nullptr, &pins, 2.5).pin_slew_m_per_s == close_to(0.12));
     CHECK(delay_warning(4000.0, 2e-3).empty());
     CHECK_FALSE(delay_warning(4000.0, 2.1e-3).empty());
 }

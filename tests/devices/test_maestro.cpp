@@ -7,9 +7,11 @@
 
 #include "devices/maestro.h"
 #include "devices/simulators/maestro_board.h"
+#include "tests/close_to.h"
 
 using namespace palpa::devices;
 using namespace palpa::devices::simulators;
+using namespace palpa::test;
 
 namespace {
 
@@ -197,7 +199,7 @@ TEST_CASE(
         CHECK(home == (timeout_s > 0.0));
         CHECK(((boards.board[0].errors & kMaestroTimeout) != 0) == (timeout_s > 0.0));
         advance(0.3, boards);
-        if (timeout_s > 0.0) CHECK(boards.pin[3].height_m == doctest::Approx(0.0));
+        if (timeout_s > 0.0) CHECK(boards.pin[3].height_m == close_to(0.0));
     }
 }
 
@@ -224,5 +226,5 @@ TEST_CASE("Maestro boards: the pulse follows the speed limit, and the pin lags b
     CHECK(boards.pin[0].height_m < 0.6e-3);
     advance(0.2, boards);
     CHECK(boards.board[0].servo[0].pulse == top);
-    CHECK(boards.pin[0].height_m == doctest::Approx(2e-3).epsilon(1e-3));
+    CHECK(boards.pin[0].height_m == close_to(2e-3).epsilon(1e-3));
 }

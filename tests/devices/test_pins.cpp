@@ -9,11 +9,13 @@
 #include "devices/pin_calibration.h"
 #include "devices/pins.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::devices;
+using namespace palpa::test;
 using palpa::test::contains;
 using palpa::test::TemporaryFolder;
 
@@ -51,7 +53,7 @@ TEST_CASE("pins: the shipped device has 36 pins on two boards") {
     CHECK(device.boards[0].count == 18);
     CHECK(device.boards[1].address.device == 13);
     CHECK(device.boards[1].address.chained);
-    CHECK(device.stroke_m == doctest::Approx(2e-3));
+    CHECK(device.stroke_m == close_to(2e-3));
     CHECK(device.pins[35].board == 1);
     CHECK(device.pins[35].channel == 17);
 }
@@ -118,10 +120,10 @@ TEST_CASE("pins: heights become pulses within the stroke, and what is no number 
     CHECK(quarter_us_of(device, pin, -1.0) == 5200);
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         CHECK(quarter_us_of(device, pin, bad) == 5200);
-    CHECK(height_m_of(pin, 6000.0) == doctest::Approx(1e-3));
+    CHECK(height_m_of(pin, 6000.0) == close_to(1e-3));
     const PinServo down{0, 0, 1700.0, 200.0, -1.0};
     CHECK(quarter_us_of(device, down, 2e-3) == 5200);
-    CHECK(height_m_of(down, 5200.0) == doctest::Approx(2e-3));
+    CHECK(height_m_of(down, 5200.0) == close_to(2e-3));
 }
 
 TEST_CASE("pins: a frame holds one packet for each board; a board of six channels gets one for each pin") {
@@ -161,8 +163,8 @@ TEST_CASE("pins: a calibration finds zeros, gains and directions, and says which
     }
     const PinCalibration found = calibrate(device, measured);
     for (std::size_t i = 0; i < 36; ++i) {
-        CHECK(found.device.pins[i].zero_us == doctest::Approx(truth.pins[i].zero_us).epsilon(1e-9));
-        CHECK(found.device.pins[i].us_per_mm == doctest::Approx(truth.pins[i].us_per_mm).epsilon(1e-9));
+        CHECK(found.device.pins[i].zero_us == close_to(truth.pins[i].zero_us).epsilon(1e-9));
+        CHECK(found.device.pins[i].us_per_mm == close_to(truth.pins[i].us_per_mm).epsilon(1e-9));
     }
     CHECK(found.before_m > 0.05e-3);
     CHECK(found.after_m < 1e-9);
@@ -172,8 +174,8 @@ TEST_CASE("pins: a calibration finds zeros, gains and directions, and says which
 
 TEST_CASE("arm: the shipped device file, and wrong ones") {
     const ArmDevice arm = read_arm_device(kArm);
-    CHECK(arm.lowest_m == doctest::Approx(-0.01));
-    CHECK(arm.deepest_m == doctest::Approx(0.05));
+    CHECK(arm.lowest_m == close_to(-0.01));
+    CHECK(arm.deepest_m == close_to(0.05));
     REQUIRE(arm.sensor);
     CHECK(arm.sensor->axis == 2);
     CHECK(arm.compensation.empty());

@@ -4,10 +4,12 @@
 #include <doctest/doctest.h>
 
 #include "devices/press_file.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa::devices;
+using namespace palpa::test;
 using palpa::test::contains;
 using palpa::test::message_of;
 
@@ -22,9 +24,9 @@ std::string said_about(const std::string& text) {
 TEST_CASE("PRESS: depths and forces are read in their units") {
     const auto depth = parse_press("t_s\tx_mm\ty_mm\tdepth_mm\n0\t10\t20\t0\n0.5\t10\t20\t3\n", "press.tsv");
     REQUIRE(depth.size() == 2);
-    CHECK(depth[1].depth_m == doctest::Approx(3e-3));
+    CHECK(depth[1].depth_m == close_to(3e-3));
     CHECK(std::isnan(depth[1].force_N));
-    CHECK(depth[1].y_m == doctest::Approx(0.02));
+    CHECK(depth[1].y_m == close_to(0.02));
     const auto force = parse_press("t_s\tforce_N\tx_mm\ty_mm\n0\t2.5\t1\t2\n", "press.tsv");
     CHECK(force[0].force_N == 2.5);
     CHECK(std::isnan(force[0].depth_m));
@@ -53,11 +55,11 @@ TEST_CASE("PRESS: linear between rows, held outside of them, also when time jump
     const auto rows = parse_press("t_s\tx_mm\ty_mm\tdepth_mm\n1\t0\t0\t0\n2\t10\t0\t4\n4\t10\t0\t0\n", "press.tsv");
     std::size_t at = 0;
     CHECK(press_at(rows, 0.0, at).depth_m == 0.0);
-    CHECK(press_at(rows, 1.5, at).depth_m == doctest::Approx(2e-3));
-    CHECK(press_at(rows, 3.0, at).depth_m == doctest::Approx(2e-3));
+    CHECK(press_at(rows, 1.5, at).depth_m == close_to(2e-3));
+    CHECK(press_at(rows, 3.0, at).depth_m == close_to(2e-3));
     CHECK(press_at(rows, 9.0, at).depth_m == 0.0);
-    CHECK(press_at(rows, 9.0, at).x_m == doctest::Approx(0.01));
-    CHECK(press_at(rows, 1.25, at).x_m == doctest::Approx(2.5e-3));
+    CHECK(press_at(rows, 9.0, at).x_m == close_to(0.01));
+    CHECK(press_at(rows, 1.25, at).x_m == close_to(2.5e-3));
 }
 
 TEST_CASE("PRESS: what is written reads back") {
@@ -71,6 +73,6 @@ TEST_CASE("PRESS: what is written reads back") {
     const auto back = read_press(folder / "press.tsv");
     REQUIRE(back.size() == 2);
     CHECK(back[1].force_N == 0.7);
-    CHECK(back[1].x_m == doctest::Approx(0.012));
+    CHECK(back[1].x_m == close_to(0.012));
     CHECK(std::isnan(back[1].depth_m));
 }

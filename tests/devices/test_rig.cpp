@@ -6,6 +6,7 @@
 
 #include "devices/rig.h"
 #include "files/input_error.h"
+#include "tests/close_to.h"
 #include "tests/devices/wires.h"
 #include "tests/error_message.h"
 
@@ -56,17 +57,17 @@ TEST_CASE("rig: what is read is written, and read again alike") {
                                   c.current_limit_counts};
             };
             for (std::size_t k = 0; k < numbers(a).size(); ++k)
-                CHECK(numbers(a)[k] == doctest::Approx(numbers(b)[k]).epsilon(1e-12));
+                CHECK(numbers(a)[k] == close_to(numbers(b)[k]).epsilon(1e-12));
         }
         CHECK(rig_json(back)["ports"] == rig_json(rig)["ports"]);
     }
     const ActuatorRig rig = rig_from(rig_text("regulator"));
-    CHECK(rig.channels[1].lower == doctest::Approx(0.02));
-    CHECK(rig.channels[1].counts_per_unit == doctest::Approx(-40000.0));
-    CHECK(rig.channels[2].upper == doctest::Approx(5000.0));
-    CHECK(rig.channels[2].force_N_per_unit == doctest::Approx(1443e-6));
+    CHECK(rig.channels[1].lower == close_to(0.02));
+    CHECK(rig.channels[1].counts_per_unit == close_to(-40000.0));
+    CHECK(rig.channels[2].upper == close_to(5000.0));
+    CHECK(rig.channels[2].force_N_per_unit == close_to(1443e-6));
     CHECK(rig.channels[2].id == 2);
-    CHECK(rig.sensor.front().m_per_count == doctest::Approx(1e-6));
+    CHECK(rig.sensor.front().m_per_count == close_to(1e-6));
 }
 
 TEST_CASE("rig: bad wires are refused with file, key, what was found and what was expected") {
@@ -124,7 +125,7 @@ TEST_CASE("rig: whatever is wanted, counts stay within range, and no number is r
                 const double back = value_of(channel, counts_of(port, channel, value));
                 CHECK(back >= channel.lower - 1e-9);
                 CHECK(back <= channel.upper + 1e-9);
-                if (!std::isfinite(value)) CHECK(back == doctest::Approx(channel.relaxed));
+                if (!std::isfinite(value)) CHECK(back == close_to(channel.relaxed));
             }
         }
     }
@@ -142,6 +143,6 @@ TEST_CASE("rig: the servos of a Maestro as pins: pulses at both ends and at rest
             const double us = channel.zero_counts + channel.counts_per_unit * value;
             CHECK(quarter_us_of(pins, pins.pins[i], value - channel.lower) == std::lround(4.0 * us));
         }
-        CHECK(pins.rest_m == doctest::Approx(channel.relaxed - channel.lower));
+        CHECK(pins.rest_m == close_to(channel.relaxed - channel.lower));
     }
 }

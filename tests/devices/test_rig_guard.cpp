@@ -7,6 +7,7 @@
 #include <random>
 
 #include "devices/rig_guard.h"
+#include "tests/close_to.h"
 #include "tests/devices/wires.h"
 #include "tests/scene/allocations.h"
 
@@ -51,7 +52,7 @@ TEST_CASE("rig guard: commands pass within range, rate and total force, and no f
     CHECK(guard.value[0] == 0.0);  // the first one starts from rest
     command(rig, {1.0, 0.03, 0.0}, 1, now_s, guard);
     CHECK(guard.value[0] == 1.0);
-    CHECK(guard.value[1] == doctest::Approx(0.053));  // 500 mm/s for 10 ms
+    CHECK(guard.value[1] == close_to(0.053));  // 500 mm/s for 10 ms
     command(rig, {1.0, 0.03, 0.0}, 10, now_s, guard);
     CHECK(guard.value[1] == 0.03);
     command(rig, {-3.0, 1.0, 1e9}, 50, now_s, guard);
@@ -60,9 +61,9 @@ TEST_CASE("rig guard: commands pass within range, rate and total force, and no f
     CHECK(guard.value[2] == 5000.0);
     CHECK(guard.limited > 0);
     command(rig, {5.0, 0.03, 5000.0}, 50, now_s, guard);
-    CHECK(total_N(rig, guard) == doctest::Approx(9.0));
+    CHECK(total_N(rig, guard) == close_to(9.0));
     CHECK(total_N(rig, guard) <= 9.0);
-    CHECK(guard.value[0] / guard.value[2] == doctest::Approx(5.0 / 5000.0));
+    CHECK(guard.value[0] / guard.value[2] == close_to(5.0 / 5000.0));
     CHECK(guard.scaled > 0);
 }
 

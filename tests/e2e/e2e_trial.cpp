@@ -66,6 +66,13 @@ class Script {
         out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
     }
     void wait(double seconds) { t_s_ += seconds; }
+    // Waits until the log's run of this number has begun, and a little for the picture.
+    void wait_for_run(const std::filesystem::path& log, int run) {
+        out_ << t_s_ << "\twait\t"
+             << (log / ("sub-01/beh/sub-01_task-palpation_run-0" + std::to_string(run) + "_events.tsv")).string()
+             << '\n';
+        wait(1.0);
+    }
     void row(const char* kind, int id, const char* phase, Point at, double pressure) {
         out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t'
              << pressure << '\n';
@@ -115,10 +122,11 @@ class Script {
     double t_s_ = 0.0;
 };
 
-void by_pen(Script& script) {
+void by_pen(const std::filesystem::path& log, Script& script) {
     script.tap("pen", 0, kMenu);
+    script.wait(0.5);
     script.tap("pen", 0, kDelayScene);
-    script.wait(2.5);  // the scene is read anew
+    script.wait_for_run(log, 2);  // the scene is read anew
     script.stroke("pen", 0, 35, 35);
     script.lift("pen", 0, 35, 35);
     script.tap("pen", 0, kMark);
@@ -128,7 +136,9 @@ void by_pen(Script& script) {
     script.tap("pen", 0, kMark);
     script.tap("pen", 0, kUndo);
     script.tap("pen", 0, kFinish);
+    script.wait(1.0);
     script.tap("pen", 0, kAgain);
+    script.wait_for_run(log, 3);
     script.row("pen", 0, "hover", place(60, 5), 0.0);
 }
 
@@ -145,13 +155,13 @@ void by_two_fingers(Script& script) {
 }
 
 // From the middle of the tissue to nodule A; speed 30 mm/s.
-void by_keyboard(Script& script) {
+void by_keyboard(const std::filesystem::path& log, Script& script) {
     script.key(kF10);  // the menu: another scene by arrows and Enter
-    script.wait(1.5);  // a slow machine needs some frames to show it
+    script.wait(3.0);  // a slow machine needs some frames to show it
     script.key(kUp);   // from the chosen "Silicone phantom, delay" to "Silicone phantom"
-    script.wait(0.5);
+    script.wait(1.0);
     script.key(kEnter);
-    script.wait(2.5);  // the scene is read anew
+    script.wait_for_run(log, 4);  // the scene is read anew
     script.key(kLeft, 25.0 / 30.0);
     script.key(kDown, 25.0 / 30.0);
     script.key(kSpace, 1.5);
@@ -168,15 +178,20 @@ TEST_CASE("app: whole trials by pen, by two fingers and by keyboard alone") {
     const TemporaryFolder folder;
     const auto path = [&](const char* name) { return (folder / name).string(); };
     Script script(folder / "script.tsv");
-    by_pen(script);
+    by_pen(path("log"), script);
     by_two_fingers(script);
-    script.wait(0.3);
-    by_keyboard(script);
+    script.wait(1.0);
+    by_keyboard(path("log"), script);
     script.wait(0.5);
-    const std::string seconds = std::to_string(script.close() + 6.0);
+    const std::string seconds = std::to_string(script.close() + 60.0);
     const std::string arguments =
         "--test --quit-after-s " + seconds + " --log " + path("log") + " --screenshot " + path("p.png");
-    REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
+    const auto meanwhile = [&] {
+        CHECK(play_script(folder) == 0);
+        sleep_s(3.0);
+        end_program(folder, "TERM");
+    };
+    REQUIRE(run_app(folder, arguments, meanwhile) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["overflow"] == "");
     CHECK(result["dropped_steps"] == 0);

@@ -2,6 +2,7 @@
 
 #include "fem/body_file.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -32,7 +33,7 @@ TEST_CASE("body file: mesh, element and the material of each cell") {
     CHECK(file.body.materials[0].young_Pa == 2500.0);
     CHECK(file.body.materials[1].young_Pa == 2e11);
     CHECK(file.body.mesh.region(1) == 1);
-    CHECK(file.body.mesh.nodes_m.row(2).maxCoeff() == doctest::Approx(0.02));
+    CHECK(file.body.mesh.nodes_m.row(2).maxCoeff() == close_to(0.02));
 }
 
 TEST_CASE("body file: supports are added to the problem of the body, and must hold all of it") {

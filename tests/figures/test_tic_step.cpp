@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "figures/tic_step.h"
+#include "tests/close_to.h"
 
 using palpa::figures::tic_step;
 
@@ -16,7 +17,7 @@ TEST_CASE("tic step: 1, 2 or 5 times a power of ten, never more tics than asked 
                           {120.0, 6.0, 20.0},
                           {7.0, 0.0, 10.0}}) {
         CAPTURE(c.range);
-        CHECK(tic_step(c.range, c.about) == doctest::Approx(c.step));
+        CHECK(tic_step(c.range, c.about) == test::close_to(c.step));
     }
     CHECK(tic_step(0.0, 5.0) > 0.0);  // a loop over tics must end
 }

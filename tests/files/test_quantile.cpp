@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "files/quantile.h"
+#include "tests/close_to.h"
 
 using namespace palpa::files;
+using namespace palpa::test;
 
 TEST_CASE("quantile: numpy's values, ends, one value, none, and what has no order") {
     const std::vector<double> values{7.0, 1.0, 4.0, 2.0};
     CHECK(quantile(values, 0.0) == 1.0);
-    CHECK(quantile(values, 0.25) == doctest::Approx(1.75));  // numpy.quantile
-    CHECK(quantile(values, 0.9) == doctest::Approx(6.1));
+    CHECK(quantile(values, 0.25) == close_to(1.75));  // numpy.quantile
+    CHECK(quantile(values, 0.9) == close_to(6.1));
     CHECK(quantile(values, 1.0) == 7.0);
     CHECK(median(values) == 3.0);
     CHECK(median({5.0, 1.0, 3.0}) == 3.0);
@@ -36,7 +38,7 @@ TEST_CASE("quantile: the types, as numpy computes them") {
                           {0.9, 37.0, 40.0, 30.0, 40.0},
                           {1.0, 40.0, 40.0, 40.0, 40.0}}) {
         CAPTURE(c.share);
-        CHECK(quantile(even, c.share, between) == doctest::Approx(c.between_).epsilon(1e-14));
+        CHECK(quantile(even, c.share, between) == close_to(c.between_).epsilon(1e-14));
         CHECK(quantile(even, c.share, nearest) == c.nearest_);
         CHECK(quantile(even, c.share, lower) == c.lower_);
         CHECK(quantile(even, c.share, reached) == c.reached_);

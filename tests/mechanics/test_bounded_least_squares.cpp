@@ -24,6 +24,7 @@
 #endif
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 using palpa::test::close_to;
 
 namespace {
@@ -134,7 +135,7 @@ TEST_CASE("bounded least squares: a column's unit changes its unknown and nothin
         p.upper(2) *= 1e-6;
         const BoundedSolution after = solve_bounded(p);
         CHECK((after.residual - before.residual).norm() <= 1e-9 * p.d.norm());
-        CHECK(1e6 * after.x(2) == doctest::Approx(before.x(2)).epsilon(1e-6));
+        CHECK(1e6 * after.x(2) == close_to(before.x(2)).epsilon(1e-6));
     }
 }
 
@@ -144,8 +145,8 @@ TEST_CASE("bounded least squares: duplicate and zero columns, equal bounds, cros
     p.d << -2.0;
     SUBCASE("duplicate columns share") {
         const BoundedSolution s = solve_bounded(p);
-        CHECK(s.x(0) == doctest::Approx(0.5));
-        CHECK(s.x(1) == doctest::Approx(0.5));
+        CHECK(s.x(0) == close_to(0.5));
+        CHECK(s.x(1) == close_to(0.5));
         CHECK(s.rank == 1);
     }
     SUBCASE("a zero column stays where its bound is nearest to 0, or where it was") {
@@ -154,13 +155,13 @@ TEST_CASE("bounded least squares: duplicate and zero columns, equal bounds, cros
         CHECK(solve_bounded(p).x(1) == 0.25);
         p.rate.setConstant(2, 1e-6);
         p.before.setConstant(2, 0.7);
-        CHECK(solve_bounded(p).x(1) == doctest::Approx(0.7));
+        CHECK(solve_bounded(p).x(1) == close_to(0.7));
     }
     SUBCASE("l = u holds") {
         p.lower(0) = p.upper(0) = 0.125;
         const BoundedSolution s = solve_bounded(p);
         CHECK(s.x(0) == 0.125);
-        CHECK(s.x(1) == doctest::Approx(0.875).epsilon(1e-6));
+        CHECK(s.x(1) == close_to(0.875).epsilon(1e-6));
     }
     SUBCASE("l > u is named") {
         p.lower(1) = 2.0;
@@ -195,8 +196,8 @@ TEST_CASE("bounded least squares: 1e5 between units, and no bounds at all") {
     p.upper.setConstant(2, kNoBound);
     p.tikhonov = 1e-16;
     const BoundedSolution s = solve_bounded(p);
-    CHECK(s.x(0) == doctest::Approx(0.4).epsilon(1e-6));
-    CHECK(s.x(1) == doctest::Approx(6e4).epsilon(1e-6));
+    CHECK(s.x(0) == close_to(0.4).epsilon(1e-6));
+    CHECK(s.x(1) == close_to(6e4).epsilon(1e-6));
     CHECK(s.active == 0U);
 }
 

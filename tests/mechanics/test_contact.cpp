@@ -6,10 +6,12 @@
 #include "mechanics/error.h"
 #include "mechanics/layer.h"
 #include "mechanics/linear_range.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -96,7 +98,7 @@ TEST_CASE("Hertz: within 3 % at contact radius / spacing > 4, on a block that is
         CHECK(hertz_contact_radius_m(0.008, depth) / 0.55e-3 > 4.0);
         MESSAGE("force over Hertz at contact radius / spacing " << hertz_contact_radius_m(0.008, depth) / 0.55e-3
                                                                 << ": " << 4.0 * contact.tool[0].normal_N / hertz);
-        CHECK(4.0 * contact.tool[0].normal_N == doctest::Approx(hertz).epsilon(0.03));
+        CHECK(4.0 * contact.tool[0].normal_N == close_to(hertz).epsilon(0.03));
         CHECK(contact.flags.over_edge);  // the quarter ends under the ball
     }
 }
@@ -149,7 +151,7 @@ TEST_CASE("hard case 20: Gauss-Seidel alone gives the same force; without sweeps
     ContactOptions sweeps;
     sweeps.max_changes = 0;
     const Contact swept = press(slab(true), tool, sweeps);
-    CHECK(swept.tool[0].normal_N == doctest::Approx(direct.tool[0].normal_N).epsilon(1e-9));
+    CHECK(swept.tool[0].normal_N == close_to(direct.tool[0].normal_N).epsilon(1e-9));
     CHECK(!swept.flags.not_settled);
     sweeps.sweeps = 1;
     const Contact rough = press(slab(true), tool, sweeps);
@@ -164,8 +166,7 @@ TEST_CASE("hard case 20: two tools at one node, doubled nodes") {
     Contact contact;
     press_to_depth(slab(false), both, {}, work, contact);
     const Contact single = press(slab(false), one);
-    CHECK(contact.tool[0].normal_N + contact.tool[1].normal_N ==
-          doctest::Approx(single.tool[0].normal_N).epsilon(1e-12));
+    CHECK(contact.tool[0].normal_N + contact.tool[1].normal_N == close_to(single.tool[0].normal_N).epsilon(1e-12));
 
     // every touch node listed twice: a singular compliance
     const Problem problem =
@@ -176,7 +177,7 @@ TEST_CASE("hard case 20: two tools at one node, doubled nodes") {
     request.touch_nodes.insert(request.touch_nodes.end(), request.touch_nodes.begin(), request.touch_nodes.end());
     const Compliance doubled = surface_compliance(problem.mesh, factored, request);
     const Contact twice = press(doubled, one);
-    CHECK(twice.tool[0].normal_N == doctest::Approx(press(plain, one).tool[0].normal_N).epsilon(1e-6));
+    CHECK(twice.tool[0].normal_N == close_to(press(plain, one).tool[0].normal_N).epsilon(1e-6));
     for (const double p : twice.force_N) CHECK(p >= 0.0);
 }
 
@@ -208,7 +209,7 @@ TEST_CASE("hard case 20: a pose that is not a number holds the last answer and s
     CHECK(capped.flags.capped);
     CHECK(capped.tool[0].normal_N == force);
     CHECK(capped.tool[0].depth_m == 0.002);
-    CHECK(press(slab(false), {kBall, {0.05, 0.05, 1.0}}).tool[0].depth_m == doctest::Approx(0.05));  // the thickness
+    CHECK(press(slab(false), {kBall, {0.05, 0.05, 1.0}}).tool[0].depth_m == close_to(0.05));  // the thickness
 
     const Contact beside = press(slab(false), {kBall, {0.2, 0.05, 0.002}});
     CHECK(beside.flags.over_edge);
@@ -226,7 +227,7 @@ TEST_CASE("contact: mirrored places give mirrored answers, alone and both at onc
     const Contact a = press(slab(false), left);
     const Contact b = press(slab(false), right);
     const double N = a.tool[0].normal_N;
-    CHECK(b.tool[0].normal_N == doctest::Approx(N).epsilon(1e-10));
+    CHECK(b.tool[0].normal_N == close_to(N).epsilon(1e-10));
     CHECK(std::abs(a.tool[0].tangential_x_N + b.tool[0].tangential_x_N) < 1e-9 * N);
     CHECK(std::abs(a.tool[0].tangential_y_N - b.tool[0].tangential_y_N) < 1e-9 * N);
     CHECK(std::abs(a.tool[0].moment_y_Nm + b.tool[0].moment_y_Nm) < 1e-9 * N * 0.008);
@@ -235,7 +236,7 @@ TEST_CASE("contact: mirrored places give mirrored answers, alone and both at onc
     Contact contact;
     press_to_depth(slab(false), both, {}, work, contact);
     check_complementary(slab(false), both, contact, 1e-11);
-    CHECK(contact.tool[0].normal_N == doctest::Approx(contact.tool[1].normal_N).epsilon(1e-10));
+    CHECK(contact.tool[0].normal_N == close_to(contact.tool[1].normal_N).epsilon(1e-10));
     CHECK(contact.tool[0].normal_N < N);  // the neighbour has lowered the surface
 }
 
@@ -252,17 +253,17 @@ TEST_CASE("contact: energy is the work of the normal force, tangential force its
         CAPTURE(x_m);
         const double depth_m = 0.003;
         const Contact contact = press(slab(true), {kBall, {x_m, 0.05, depth_m}});
-        CHECK(work_J(x_m, depth_m) == doctest::Approx(contact.energy_J).epsilon(2e-3));
+        CHECK(work_J(x_m, depth_m) == close_to(contact.energy_J).epsilon(2e-3));
         const double reach_m = 0.15e-3;  // within one cell: both sides see the same nodes
         const double slope_N = (work_J(x_m + reach_m, depth_m) - work_J(x_m - reach_m, depth_m)) / (2.0 * reach_m);
-        CHECK(contact.tool[0].tangential_x_N == doctest::Approx(slope_N).epsilon(0.05).scale(0.0));
+        CHECK(contact.tool[0].tangential_x_N == close_to(slope_N).epsilon(0.05));
         CHECK(slope_N > 0.03 * contact.tool[0].normal_N);  // a slope worth the name
     }
     // exactly the derivative of the discrete energy
     const double h = 1e-7;
     const auto energy_J = [](double x_m) { return press(slab(true), {kBall, {x_m, 0.05, 0.003}}).energy_J; };
     CHECK(press(slab(true), {kBall, {0.0513, 0.05, 0.003}}).tool[0].tangential_x_N ==
-          doctest::Approx((energy_J(0.0513 + h) - energy_J(0.0513 - h)) / (2.0 * h)).epsilon(1e-5));
+          close_to((energy_J(0.0513 + h) - energy_J(0.0513 - h)) / (2.0 * h)).epsilon(1e-5));
 }
 
 TEST_CASE("contact: over a nodule it is stiffer, and the tangential force changes sign there") {
@@ -306,7 +307,7 @@ TEST_CASE("contact: force input finds the depth") {
     for (const double force_N : {1e-6, 0.001, 0.01, 0.05, 0.1, 0.2}) {
         CAPTURE(force_N);
         press_with_force(slab(true), {kBall, {0.053, 0.049, 0.0}}, force_N, {}, work, contact);
-        CHECK(contact.tool[0].normal_N == doctest::Approx(force_N).epsilon(1e-8));
+        CHECK(contact.tool[0].normal_N == close_to(force_N).epsilon(1e-8));
         CHECK(contact.tool[0].depth_m > last_m);
         CHECK(!contact.flags.capped);
         last_m = contact.tool[0].depth_m;
@@ -315,7 +316,7 @@ TEST_CASE("contact: force input finds the depth") {
         const Contact more = press(slab(true), {kBall, {0.053, 0.049, last_m + h}});
         const Contact less = press(slab(true), {kBall, {0.053, 0.049, last_m - h}});
         CHECK(contact.stiffness_N_per_m ==
-              doctest::Approx((more.tool[0].normal_N - less.tool[0].normal_N) / (2.0 * h)).epsilon(1e-3));
+              close_to((more.tool[0].normal_N - less.tool[0].normal_N) / (2.0 * h)).epsilon(1e-3));
     }
     press_with_force(slab(true), {kBall, {0.053, 0.049, 0.003}}, 0.0, {}, work, contact);
     CHECK(contact.tool[0].normal_N == 0.0);
@@ -323,7 +324,7 @@ TEST_CASE("contact: force input finds the depth") {
     shallow.max_depth_m = 0.002;
     press_with_force(slab(true), {kBall, {0.053, 0.049, 0.0}}, 5.0, shallow, work, contact);
     CHECK(contact.flags.capped);
-    CHECK(contact.tool[0].depth_m == doctest::Approx(0.002));
+    CHECK(contact.tool[0].depth_m == close_to(0.002));
     press_with_force(slab(true), {kBall, {0.3, 0.3, 0.0}}, 0.1, {}, work, contact);  // beside the tissue
     CHECK(contact.flags.capped);
     CHECK(contact.tool[0].normal_N == 0.0);
@@ -408,7 +409,7 @@ TEST_CASE("contact: a surface that other loads have raised is met over its whole
     const Contact on_raised = press(raised, shallow);
     const Contact on_flat = press(flat, deep);
     CHECK(on_raised.touch == on_flat.touch);
-    CHECK(on_raised.tool[0].normal_N == doctest::Approx(on_flat.tool[0].normal_N).epsilon(1e-9));
+    CHECK(on_raised.tool[0].normal_N == close_to(on_flat.tool[0].normal_N).epsilon(1e-9));
 }
 
 TEST_CASE("contact: nothing is allocated after the first calls") {

@@ -5,9 +5,11 @@
 #include "mechanics/contact.h"
 #include "mechanics/contact_area.h"
 #include "mechanics/layer.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -75,7 +77,7 @@ TEST_CASE("contact area: within a tenth of Hertz at three spacings across the ra
             const Pressed p = pressed(slab, off * spacing_m);
             MESSAGE(spacings << " spacings, " << off << " beside a node: " << p.area_m2 / hertz_m2
                              << " of Hertz, whole shares " << p.node_sum_m2 / hertz_m2);
-            CHECK(p.area_m2 == doctest::Approx(hertz_m2).epsilon(spacings < 4.0 ? 0.10 : 0.06));
+            CHECK(p.area_m2 == close_to(hertz_m2).epsilon(spacings < 4.0 ? 0.10 : 0.06));
             CHECK(p.area_m2 < p.node_sum_m2);
         }
     }
@@ -90,10 +92,10 @@ TEST_CASE("contact area: a node alone counts whole, as do nodes pressed evenly")
     const int beside = nearest_node(mesh, 3.0, 2.0, 1.0);
     const int one[] = {middle};
     const double one_N[] = {0.3};
-    CHECK(contact_area_m2(top, area_m2, one, one_N) == doctest::Approx(1.0));
+    CHECK(contact_area_m2(top, area_m2, one, one_N) == close_to(1.0));
     const int two[] = {middle, beside};
     const double even_N[] = {0.3, 0.3};
-    CHECK(contact_area_m2(top, area_m2, two, even_N) == doctest::Approx(2.0));
+    CHECK(contact_area_m2(top, area_m2, two, even_N) == close_to(2.0));
     const double odd_N[] = {0.3, 0.1};
-    CHECK(contact_area_m2(top, area_m2, two, odd_N) == doctest::Approx(1.0 + 1.0 / 3.0 + 0.125));
+    CHECK(contact_area_m2(top, area_m2, two, odd_N) == close_to(1.0 + 1.0 / 3.0 + 0.125));
 }

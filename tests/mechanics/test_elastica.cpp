@@ -6,6 +6,7 @@
 #include "tests/close_to.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 using palpa::test::close_to;
 
 namespace {

@@ -2,8 +2,10 @@
 #include <random>
 
 #include "mechanics/face_point.h"
+#include "tests/close_to.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -32,8 +34,8 @@ TEST_CASE("face point: beside the long edge of a triangle the nearest point lies
         0, 0, 1,   //
         0, 0, 0;
     const OnFace found = nearest_on_face(x, {1.0, 1.0, 0.0});
-    CHECK(found.away_m == doctest::Approx(std::sqrt(0.5)));
-    CHECK(found.weight.sum() == doctest::Approx(1.0));
+    CHECK(found.away_m == close_to(std::sqrt(0.5)));
+    CHECK(found.weight.sum() == close_to(1.0));
     CHECK((x * found.weight - Eigen::Vector3d(0.5, 0.5, 0.0)).norm() < 1e-12);
 }
 
@@ -53,7 +55,7 @@ TEST_CASE("face point: no point of a skew triangle or parallelogram is nearer th
         const Eigen::Vector3d place = 2.0 * point();
         const OnFace found = nearest_on_face(x, place);
         CHECK(found.weight.minCoeff() > -1e-9);
-        CHECK(found.away_m == doctest::Approx((x * found.weight - place).norm()));
+        CHECK(found.away_m == close_to((x * found.weight - place).norm()));
         CHECK(found.away_m < least_distance_m(x, place, 200) + 1e-9);
     }
 }

@@ -11,6 +11,7 @@
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 using Eigen::Vector2d;
 using palpa::test::close_to;
 

@@ -7,8 +7,10 @@
 
 #include "mechanics/error.h"
 #include "mechanics/hyperelastic.h"
+#include "tests/close_to.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -40,9 +42,9 @@ TEST_CASE("laws: at rest there is neither energy nor stress, and the moduli are 
         constexpr double h = 1e-6;
         Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
         shear(0, 1) = h;
-        CHECK(cauchy_stress_Pa(material, shear)(0, 1) / h == doctest::Approx(kMu).epsilon(1e-5));
+        CHECK(cauchy_stress_Pa(material, shear)(0, 1) / h == close_to(kMu).epsilon(1e-5));
         const Eigen::Matrix3d swollen = (1.0 + h / 3.0) * Eigen::Matrix3d::Identity();
-        CHECK(cauchy_stress_Pa(material, swollen).trace() / (3.0 * h) == doctest::Approx(kKappa).epsilon(1e-5));
+        CHECK(cauchy_stress_Pa(material, swollen).trace() / (3.0 * h) == close_to(kKappa).epsilon(1e-5));
         if (law == Law::corotational) continue;
         CHECK(std::abs(energy_density(material, 3.0, 1.0).W_Pa) < 1e-12 * kMu);
     }
@@ -96,9 +98,9 @@ TEST_CASE("laws: a bar pulled and pressed has the known forces") {
     for (const Row& row : kRows) {
         CAPTURE(row.stretch);
         const double split_Pa = uniaxial_Pa({Law::neo_hookean_split, kMu, kKappa}, row.stretch);
-        CHECK(split_Pa == doctest::Approx(row.split_Pa).epsilon(1e-10));
-        CHECK(split_Pa == doctest::Approx(row.calculix_Pa).epsilon(4e-7));
-        CHECK(uniaxial_Pa({Law::neo_hookean, kMu, kKappa}, row.stretch) == doctest::Approx(row.log_Pa).epsilon(1e-10));
+        CHECK(split_Pa == close_to(row.split_Pa).epsilon(1e-10));
+        CHECK(split_Pa == close_to(row.calculix_Pa).epsilon(4e-7));
+        CHECK(uniaxial_Pa({Law::neo_hookean, kMu, kKappa}, row.stretch) == close_to(row.log_Pa).epsilon(1e-10));
     }
 }
 
@@ -121,17 +123,17 @@ TEST_CASE("stretches: F = U s V^T with rotations, inside out too") {
         for (int i = 0; i < 9; ++i) F.data()[i] = entry(random);
         const Stretches s = stretches_of(F);
         CHECK((s.U * s.s.asDiagonal() * s.V.transpose() - F).norm() < 1e-14);
-        CHECK(s.rotation().determinant() == doctest::Approx(1.0));
-        CHECK(s.s.prod() == doctest::Approx(F.determinant()));
+        CHECK(s.rotation().determinant() == close_to(1.0));
+        CHECK(s.s.prod() == close_to(F.determinant()));
     }
 }
 
 TEST_CASE("laws: moduli at rest go there and back, and wrong ones are refused") {
     const LargeMaterial silicone{Law::neo_hookean, kMu, kKappa};
     const Material rest = at_rest(silicone);
-    CHECK(rest.young_Pa == doctest::Approx(130.4e3).epsilon(1e-3));
-    CHECK(rest.poisson == doctest::Approx(0.4494).epsilon(1e-4));
-    CHECK(with_law(rest, Law::neo_hookean).kappa_Pa == doctest::Approx(kKappa).epsilon(1e-12));
+    CHECK(rest.young_Pa == close_to(130.4e3).epsilon(1e-3));
+    CHECK(rest.poisson == close_to(0.4494).epsilon(1e-4));
+    CHECK(with_law(rest, Law::neo_hookean).kappa_Pa == close_to(kKappa).epsilon(1e-12));
     for (const LargeMaterial& bad : {LargeMaterial{Law::neo_hookean, 0.0, 1.0}, LargeMaterial{Law::linear, 1.0, 1.0},
                                      LargeMaterial{Law::corotational, 1.0, std::nan("")}})
         CHECK_THROWS_AS(check_large_materials(std::vector{silicone, bad}), MaterialError);

@@ -7,9 +7,11 @@
 #include "mechanics/error.h"
 #include "mechanics/loads.h"
 #include "mechanics/mesh_check.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -35,7 +37,7 @@ void check_exact(const Mesh& mesh, const ParabolicPressure& pressure) {
     CAPTURE(pressure.diameter_m);
     const double Pmax = 8.0 * pressure.force_N / (std::numbers::pi * pressure.diameter_m * pressure.diameter_m);
     CHECK(Pmax * std::numbers::pi * pressure.diameter_m * pressure.diameter_m / 8.0 ==
-          doctest::Approx(pressure.force_N).epsilon(1e-14));
+          close_to(pressure.force_N).epsilon(1e-14));
     for (const LoadShare share : {LoadShare::consistent, LoadShare::thirds}) {
         const PressureLoad load = parabolic_load(mesh, outer, pressure, share);
         CHECK(std::abs(-load.force_N.row(2).sum() / pressure.force_N - 1.0) < 1e-10);
@@ -79,10 +81,10 @@ TEST_CASE("hard case 19: off the mesh only the inside share acts, and it is flag
     const Mesh mesh = jittered(true, 1, 0.003);
     const Faces outer = boundary_faces(mesh);
     const PressureLoad half = parabolic_load(mesh, outer, {Side::zmax, {0.0, 0.05}, 0.02, 1.0}, LoadShare::consistent);
-    CHECK(half.applied_N == doctest::Approx(0.5).epsilon(1e-10));
+    CHECK(half.applied_N == close_to(0.5).epsilon(1e-10));
     CHECK(half.partial);
     const PressureLoad quarter = parabolic_load(mesh, outer, {Side::zmax, {0.1, 0.1}, 0.02, 1.0}, LoadShare::thirds);
-    CHECK(quarter.applied_N == doctest::Approx(0.25).epsilon(1e-10));
+    CHECK(quarter.applied_N == close_to(0.25).epsilon(1e-10));
     const PressureLoad none = parabolic_load(mesh, outer, {Side::zmax, {0.2, 0.2}, 0.02, 1.0}, LoadShare::consistent);
     CHECK(none.applied_N == 0.0);
     CHECK(none.partial);
@@ -96,7 +98,7 @@ TEST_CASE("parabolic load: thirds move the first moment, consistent shares do no
         const PressureLoad load = parabolic_load(mesh, outer, pressure, share);
         return load.force_N.row(2).dot(mesh.nodes_m.row(0)) / load.force_N.row(2).sum();
     };
-    CHECK(centre_x(LoadShare::consistent) == doctest::Approx(0.0433).epsilon(1e-10));
+    CHECK(centre_x(LoadShare::consistent) == close_to(0.0433).epsilon(1e-10));
     CHECK(std::abs(centre_x(LoadShare::thirds) - 0.0433) > 1e-6);
 }
 
@@ -107,7 +109,7 @@ TEST_CASE("parabolic load: moved and turned meshes carry the same forces, all si
     for (const Side side : {Side::xmin, Side::xmax, Side::ymin, Side::ymax, Side::zmin, Side::zmax}) {
         const PressureLoad load = parabolic_load(mesh, outer, {side, {0.043, 0.06}, 0.03, 1.0}, LoadShare::consistent);
         const double sign = is_max(side) ? -1.0 : 1.0;
-        CHECK(load.force_N.row(axis_of(side)).sum() * sign == doctest::Approx(1.0).epsilon(1e-12));
+        CHECK(load.force_N.row(axis_of(side)).sum() * sign == close_to(1.0).epsilon(1e-12));
         std::vector<double> forces;
         for (Eigen::Index i = 0; i < load.force_N.cols(); ++i)
             forces.push_back(std::abs(load.force_N(axis_of(side), i)));

@@ -5,8 +5,10 @@
 #include "mechanics/error.h"
 #include "mechanics/mesh.h"
 #include "mechanics/mesh_check.h"
+#include "tests/close_to.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 TEST_CASE("box: every cell has its corners in VTK order") {
     // also guards against a compiler that swaps the last two: see cmake/warnings.cmake
@@ -29,21 +31,20 @@ TEST_CASE("graded coordinates: node at the centre, finest beside it, one ratio p
     REQUIRE(x.size() == 41);
     CHECK(x(0) == 0.0);
     CHECK(x(40) == 0.4);
-    CHECK(x(20) == doctest::Approx(0.2).epsilon(1e-15));
-    CHECK(x(21) - x(20) == doctest::Approx(0.0015).epsilon(1e-9));
+    CHECK(x(20) == close_to(0.2).epsilon(1e-15));
+    CHECK(x(21) - x(20) == close_to(0.0015).epsilon(1e-9));
     const double ratio = (x(22) - x(21)) / (x(21) - x(20));
-    for (int i = 21; i < 39; ++i)
-        CHECK((x(i + 2) - x(i + 1)) / (x(i + 1) - x(i)) == doctest::Approx(ratio).epsilon(1e-9));
-    for (int i = 0; i <= 40; ++i) CHECK(x(i) + x(40 - i) == doctest::Approx(0.4).epsilon(1e-14));  // mirrored
+    for (int i = 21; i < 39; ++i) CHECK((x(i + 2) - x(i + 1)) / (x(i + 1) - x(i)) == close_to(ratio).epsilon(1e-9));
+    for (int i = 0; i <= 40; ++i) CHECK(x(i) + x(40 - i) == close_to(0.4).epsilon(1e-14));  // mirrored
 }
 
 TEST_CASE("graded coordinates: off-centre, at an edge, too coarse, one cell") {
     const Eigen::VectorXd off = graded_coordinates_m(1.0, 30, 0.25, 0.005);
     CHECK(((off.tail(30) - off.head(30)).array() > 0.0).all());
     CHECK((off.array() - 0.25).abs().minCoeff() < 1e-15);
-    CHECK((off.tail(30) - off.head(30)).minCoeff() == doctest::Approx(0.005).epsilon(1e-6));
+    CHECK((off.tail(30) - off.head(30)).minCoeff() == close_to(0.005).epsilon(1e-6));
     const Eigen::VectorXd edge = graded_coordinates_m(0.05, 12, 0.05, 0.001);  // as z: finest at the top
-    CHECK(edge(12) - edge(11) == doctest::Approx(0.001).epsilon(1e-9));
+    CHECK(edge(12) - edge(11) == close_to(0.001).epsilon(1e-9));
     const Eigen::VectorXd coarse = graded_coordinates_m(1.0, 4, 0.5, 0.9);
     CHECK((coarse - Eigen::VectorXd::LinSpaced(5, 0.0, 1.0)).norm() < 1e-15);
     CHECK(graded_coordinates_m(0.3, 1, 0.1, 0.01)(1) == 0.3);
@@ -56,8 +57,8 @@ TEST_CASE("tets: six per hexahedron fill it, faces match") {
     const Mesh hexes = hex_box({{0.1, 0.1, 0.05}, {4, 3, 2}, Grading{{0.03, 0.05}, 0.01}});
     const Mesh tets = split_to_tets(hexes);
     REQUIRE(tets.cells.cols() == 6 * hexes.cells.cols());
-    CHECK(check_mesh(tets).volume_m3 == doctest::Approx(5e-4).epsilon(1e-12));
-    CHECK(check_mesh(hexes).volume_m3 == doctest::Approx(5e-4).epsilon(1e-12));
+    CHECK(check_mesh(tets).volume_m3 == close_to(5e-4).epsilon(1e-12));
+    CHECK(check_mesh(hexes).volume_m3 == close_to(5e-4).epsilon(1e-12));
     CHECK(boundary_faces(tets).cell.size() == 2 * boundary_faces(hexes).cell.size());  // none left open inside
 }
 
@@ -76,7 +77,7 @@ TEST_CASE("faces: outward, closed, and their shares add up") {
         }
         CHECK(area_vector.norm() < 1e-16);
         const Faces top = faces_on(*mesh, outer, Side::zmax);
-        CHECK(tributary_area_m2(*mesh, top).sum() == doctest::Approx(0.02).epsilon(1e-13));
+        CHECK(tributary_area_m2(*mesh, top).sum() == close_to(0.02).epsilon(1e-13));
         CHECK(nodes_of(top).size() == 12);
         CHECK(nodes_of(faces_on(*mesh, outer, Side::xmin)).size() == 9);
     }
@@ -87,10 +88,10 @@ TEST_CASE("sphere: shares converge to its volume, centroids decide the region") 
     const Sphere sphere{{0.021, 0.02, 0.019}, 0.01};
     const double exact = 4.0 / 3.0 * std::numbers::pi * 1e-6;
     const double cell = 6.4e-8;
-    CHECK(sphere_share(mesh, sphere, 8).sum() * cell == doctest::Approx(exact).epsilon(0.005));
-    CHECK(sphere_share(split_to_tets(mesh), sphere, 6).sum() * cell / 6.0 == doctest::Approx(exact).epsilon(0.01));
+    CHECK(sphere_share(mesh, sphere, 8).sum() * cell == close_to(exact).epsilon(0.005));
+    CHECK(sphere_share(split_to_tets(mesh), sphere, 6).sum() * cell / 6.0 == close_to(exact).epsilon(0.01));
     const int inside = assign_sphere(sphere, 3, mesh);
-    CHECK(inside * cell == doctest::Approx(exact).epsilon(0.1));
+    CHECK(inside * cell == close_to(exact).epsilon(0.1));
     CHECK((mesh.region.array() == 3).count() == inside);
     CHECK(assign_sphere({{1.0, 1.0, 1.0}, 0.01}, 5, mesh) == 0);
 }

@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 
 #include "mechanics/mesh_seams.h"
+#include "tests/close_to.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -44,7 +46,7 @@ TEST_CASE("seams: nodes inside faces and on edges of coarser cells hang, nodes o
         CHECK(seams.hanging.size() == 16);
         CHECK(seams.doubled.size() == 18);
         for (const Seam& seam : seams.hanging) {
-            CHECK(halves.nodes_m(0, seam.node) == doctest::Approx(0.03));
+            CHECK(halves.nodes_m(0, seam.node) == close_to(0.03));
             CHECK(seam.other == -1);
         }
         const Seams equal = seams_of(side_by_side(of(cube(3)), of(cube(3)), 0.03));

@@ -4,10 +4,12 @@
 #include "mechanics/compliance.h"
 #include "mechanics/error.h"
 #include "mechanics/operators.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 using palpa::test::contains;
 
 namespace {
@@ -107,8 +109,8 @@ TEST_CASE("responses: the weights of one sum add up, an empty sum is nothing, no
     const NodeSum twice{{top, 2, 0.75}, {top, 2, 1.25}};
     const Eigen::MatrixXd W = responses(factored, {one, twice, {}}, {one, twice, {}});
     CHECK(W(0, 0) > 0.0);
-    CHECK(W(1, 0) == doctest::Approx(2.0 * W(0, 0)).epsilon(1e-12));
-    CHECK(W(1, 1) == doctest::Approx(4.0 * W(0, 0)).epsilon(1e-12));
+    CHECK(W(1, 0) == close_to(2.0 * W(0, 0)).epsilon(1e-12));
+    CHECK(W(1, 1) == close_to(4.0 * W(0, 0)).epsilon(1e-12));
     CHECK(W.row(2).isZero(0.0));
     CHECK(W.col(2).isZero(0.0));
     CHECK(responses(factored, {}, {one}).rows() == 0);

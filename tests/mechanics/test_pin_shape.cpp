@@ -12,6 +12,7 @@
 #include "tests/mechanics/allocation_count.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 using Eigen::VectorXd;
 using palpa::test::close_to;
 

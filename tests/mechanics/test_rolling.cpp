@@ -3,9 +3,11 @@
 #include "mechanics/error.h"
 #include "mechanics/rolling.h"
 #include "mechanics/rolling_mesh.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/rolling_block.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 TEST_CASE("rolling: coordinates pass through the ends of every zone and rise") {
     const Eigen::VectorXd x =
@@ -49,9 +51,9 @@ TEST_CASE("rolling: two balls pressed at mirrored places give mirrored answers")
     for (const double x : {0.004, 0.0101, 0.0133, 0.02}) {
         const RollingForce left = roller.at(x, 0.021);
         const RollingForce right = roller.at(0.05 - x, 0.029);
-        CHECK(right.normal_N == doctest::Approx(left.normal_N).epsilon(1e-8));
-        CHECK(right.tangential_x_N == doctest::Approx(-left.tangential_x_N).epsilon(1e-6));
-        CHECK(right.tangential_y_N == doctest::Approx(-left.tangential_y_N).epsilon(1e-6));
+        CHECK(right.normal_N == close_to(left.normal_N).epsilon(1e-8));
+        CHECK(right.tangential_x_N == close_to(-left.tangential_x_N).epsilon(1e-6));
+        CHECK(right.tangential_y_N == close_to(-left.tangential_y_N).epsilon(1e-6));
     }
 }
 

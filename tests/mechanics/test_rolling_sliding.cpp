@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "mechanics/error.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/rolling_block.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -64,12 +66,12 @@ TEST_CASE("sliding: as the coefficient goes to nothing it is rolling, and rollin
     for (const PairTable& part : rolled.tables.parts) CHECK(part.along_y.empty());
     Roller slid(rough(rolled.model, 1e-7));
     for (std::size_t i = 0; i < rolled.tables.contact.value.size(); ++i) {
-        CHECK(slid.tables.contact.value[i] == doctest::Approx(rolled.tables.contact.value[i]).epsilon(1e-12));
+        CHECK(slid.tables.contact.value[i] == close_to(rolled.tables.contact.value[i]).epsilon(1e-12));
     }
     for (const double x : {0.0, 0.017, 0.023}) {
         const RollingForce a = rolled.at(x, 0.025);
         const RollingForce b = slid.at(x, 0.025);
-        CHECK(b.normal_N == doctest::Approx(a.normal_N).epsilon(1e-6));
+        CHECK(b.normal_N == close_to(a.normal_N).epsilon(1e-6));
         CHECK(std::abs(b.tangential_x_N - a.tangential_x_N) < 1e-6 * a.normal_N);
         CHECK(std::abs(b.tangential_y_N - a.tangential_y_N) < 1e-6 * a.normal_N);
     }
@@ -85,17 +87,17 @@ TEST_CASE("sliding: a mirrored phantom gives mirrored answers, a transposed one 
         const double x = place.first, y = place.second;
         CAPTURE(x);
         const RollingForce f = roller.at(x, y);
-        CHECK(over_y.at(x, 0.05 - y).normal_N == doctest::Approx(f.normal_N).epsilon(1e-8));
-        CHECK(over_y.at(x, 0.05 - y).tangential_x_N == doctest::Approx(f.tangential_x_N).epsilon(1e-7));
-        CHECK(transposed.at(y, x).tangential_y_N == doctest::Approx(f.tangential_x_N).epsilon(1e-7));
-        CHECK(transposed.at(y, x).tangential_x_N == doctest::Approx(f.tangential_y_N).epsilon(1e-7));
+        CHECK(over_y.at(x, 0.05 - y).normal_N == close_to(f.normal_N).epsilon(1e-8));
+        CHECK(over_y.at(x, 0.05 - y).tangential_x_N == close_to(f.tangential_x_N).epsilon(1e-7));
+        CHECK(transposed.at(y, x).tangential_y_N == close_to(f.tangential_x_N).epsilon(1e-7));
+        CHECK(transposed.at(y, x).tangential_x_N == close_to(f.tangential_y_N).epsilon(1e-7));
         // towards -x over the block mirrored in x
         over_x.at(0.05 - x, y);
         Contact back;
         slide_steadily(over_x.work.patch, {{IndenterShape::sphere, 0.003}, {0.05 - x, y, kDepths_m[1]}},
                        {{-1.0, 0.0}, mu}, over_x.work.slide, back);
-        CHECK(back.tool[0].normal_N == doctest::Approx(f.normal_N).epsilon(1e-8));
-        CHECK(back.tool[0].tangential_x_N == doctest::Approx(-f.tangential_x_N).epsilon(1e-7));
+        CHECK(back.tool[0].normal_N == close_to(f.normal_N).epsilon(1e-8));
+        CHECK(back.tool[0].tangential_x_N == close_to(-f.tangential_x_N).epsilon(1e-7));
     }
 }
 
@@ -110,16 +112,16 @@ TEST_CASE("sliding: mu N and a few per cent in the middle of a plain block; more
     CHECK(above_friction_N(0.029) < -0.02 * roller.at(0.029, 0.025).normal_N);
     Roller plain(rough(rolling_block({}), mu));
     const RollingForce middle = plain.at(0.025, 0.025);
-    CHECK(middle.tangential_x_N == doctest::Approx(mu * middle.normal_N).epsilon(0.05));
-    CHECK(middle.tangential_y_N == doctest::Approx(middle.tangential_x_N).epsilon(1e-9));
+    CHECK(middle.tangential_x_N == close_to(mu * middle.normal_N).epsilon(0.05));
+    CHECK(middle.tangential_y_N == close_to(middle.tangential_x_N).epsilon(1e-9));
 }
 
 TEST_CASE("cylinder: symmetric, stronger the longer, resists along y too, and rolls without ripple") {
     Roller roller(cylinder(rolling_block({}), 0.006));
     const RollingForce middle = roller.at(0.025, 0.025);
     CHECK(std::abs(middle.tangential_x_N) < 1e-9 * middle.normal_N);
-    CHECK(roller.at(0.010, 0.025).normal_N == doctest::Approx(roller.at(0.040, 0.025).normal_N).epsilon(1e-8));
-    CHECK(roller.at(0.025, 0.008).normal_N == doctest::Approx(roller.at(0.025, 0.042).normal_N).epsilon(1e-8));
+    CHECK(roller.at(0.010, 0.025).normal_N == close_to(roller.at(0.040, 0.025).normal_N).epsilon(1e-8));
+    CHECK(roller.at(0.025, 0.008).normal_N == close_to(roller.at(0.025, 0.042).normal_N).epsilon(1e-8));
     Roller longer(cylinder(rolling_block({}), 0.012));
     const double ratio = longer.at(0.025, 0.025).normal_N / middle.normal_N;
     CHECK(ratio > 1.5);
@@ -139,9 +141,9 @@ TEST_CASE("cylinder: its lattice ends where it does and stays bounded; half the 
         RollingModel model = cylinder(rolling_block({}), length_m);
         const double h_m = choose_rolling_mesh(model).contact_m;
         const double rows = length_m / h_m;
-        CHECK(rows == doctest::Approx(std::round(rows)).epsilon(1e-12));
+        CHECK(rows == close_to(std::round(rows)).epsilon(1e-12));
         CHECK(rows * 2.0 * model.radius_m / h_m < 720.0);  // 600, and what rounding to whole cells adds
-        CHECK(choose_rolling_mesh(model, 0.5).contact_m == doctest::Approx(0.5 * h_m).epsilon(0.35));
+        CHECK(choose_rolling_mesh(model, 0.5).contact_m == close_to(0.5 * h_m).epsilon(0.35));
     }
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(cylinder(rolling_block({}), 0.0)), doctest::Contains("length"), LoadError);
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(cylinder(rolling_block({}), 1e-5)), doctest::Contains("at least"),

@@ -7,6 +7,7 @@
 #include "tests/mechanics/allocation_count.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -31,8 +32,8 @@ TEST_CASE("sphere on a soft block: the force is the slope of the elastic energy"
     REQUIRE(converge_at(press, 4e-3 - kHalf_m, work).valid);
     const double below_J = energy_J(press.body, work.u_m);
     const double below_N = converge_at(press, 4e-3 - kHalf_m, work).force_N;
-    CHECK(middle.force_N == doctest::Approx(4.0 * (above_J - below_J) / (2.0 * kHalf_m)).epsilon(1e-5));
-    CHECK(middle.slope_N_per_m == doctest::Approx((above_N - below_N) / (2.0 * kHalf_m)).epsilon(5e-2));
+    CHECK(middle.force_N == close_to(4.0 * (above_J - below_J) / (2.0 * kHalf_m)).epsilon(1e-5));
+    CHECK(middle.slope_N_per_m == close_to((above_N - below_N) / (2.0 * kHalf_m)).epsilon(5e-2));
     CHECK(middle.force_N > 0.05);
 }
 
@@ -68,7 +69,7 @@ TEST_CASE("sphere on a soft block: one step per tick follows a finger, and repea
     const double greatest_N = converge_at(press, 5e-3, exact).force_N;
     CHECK(worst < 0.01 * greatest_N);
     for (int i = 0; i < 12; ++i) step_to(press, 5e-3, steps);
-    CHECK(step_to(press, 5e-3, steps).force_N == doctest::Approx(greatest_N).epsilon(1e-8));
+    CHECK(step_to(press, 5e-3, steps).force_N == close_to(greatest_N).epsilon(1e-8));
 }
 
 TEST_CASE("sphere on a soft block: a step allocates nothing; what is not finite and a jump change nothing for good") {
@@ -79,9 +80,9 @@ TEST_CASE("sphere on a soft block: a step allocates nothing; what is not finite 
     const SpherePressAnswer answer = step_to(press, 2.05e-3, work);
     CHECK(allocation_count() == before);
     CHECK_FALSE(step_to(press, NAN, work).valid);
-    CHECK(step_to(press, 2.05e-3, work).force_N == doctest::Approx(answer.force_N).epsilon(1e-3));
+    CHECK(step_to(press, 2.05e-3, work).force_N == close_to(answer.force_N).epsilon(1e-3));
     for (int i = 0; i < 30; ++i) CHECK(std::isfinite(step_to(press, i % 2 == 0 ? 6e-3 : 0.0, work).force_N));
-    CHECK(converge_at(press, 0.0, work).force_N == doctest::Approx(0.0));
+    CHECK(converge_at(press, 0.0, work).force_N == close_to(0.0));
 }
 
 TEST_CASE("sphere on a soft block: what cannot be pressed is refused") {

@@ -4,9 +4,11 @@
 #include "mechanics/error.h"
 #include "mechanics/friction.h"
 #include "mechanics/steady_sliding.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -41,11 +43,11 @@ TEST_CASE("steady sliding: without friction it is the frictionless contact") {
         press_to_depth(sliding_slab(), {&tool, 1}, {}, work, smooth);
         const Contact slid = steady(tool, {1.0, 0.0}, 0.0);
         CHECK(slid.touch == smooth.touch);
-        CHECK(slid.tool[0].normal_N == doctest::Approx(smooth.tool[0].normal_N).epsilon(1e-9));
+        CHECK(slid.tool[0].normal_N == close_to(smooth.tool[0].normal_N).epsilon(1e-9));
         CHECK(std::abs(slid.tool[0].tangential_x_N - smooth.tool[0].tangential_x_N) < 1e-9 * smooth.tool[0].normal_N);
         // towards it without a jump: to first order in mu
         const Contact nearly = steady(tool, {1.0, 0.0}, 1e-6);
-        CHECK(nearly.tool[0].normal_N == doctest::Approx(smooth.tool[0].normal_N).epsilon(1e-5));
+        CHECK(nearly.tool[0].normal_N == close_to(smooth.tool[0].normal_N).epsilon(1e-5));
     }
 }
 
@@ -95,7 +97,7 @@ TEST_CASE(
         const double dy = at.y() - tool.pose.y_m;
         slope_N += contact.force_N[i] * dx / std::sqrt(kBall.radius_m * kBall.radius_m - dx * dx - dy * dy);
     }
-    CHECK(f.tangential_x_N == doctest::Approx(mu * f.normal_N + slope_N).epsilon(1e-12));
+    CHECK(f.tangential_x_N == close_to(mu * f.normal_N + slope_N).epsilon(1e-12));
     CHECK(std::abs(f.tangential_y_N) < 1e-9 * f.normal_N);
     // with a poisson ratio below 1/2 pressing draws the surface to the load, so dragging makes it sink ahead
     // (Maxwell-Betti): less pressure there
@@ -103,10 +105,10 @@ TEST_CASE(
     CHECK(f.moment_y_Nm > 0.0);
 
     const ToolForce back = steady(tool, {-1.0, 0.0}, mu).tool[0];
-    CHECK(back.normal_N == doctest::Approx(f.normal_N).epsilon(1e-9));
-    CHECK(back.tangential_x_N == doctest::Approx(-f.tangential_x_N).epsilon(1e-9));
+    CHECK(back.normal_N == close_to(f.normal_N).epsilon(1e-9));
+    CHECK(back.tangential_x_N == close_to(-f.tangential_x_N).epsilon(1e-9));
     const ToolForce along_y = steady(tool, {0.0, 1.0}, mu).tool[0];
-    CHECK(along_y.tangential_y_N == doctest::Approx(f.tangential_x_N).epsilon(1e-9));
+    CHECK(along_y.tangential_y_N == close_to(f.tangential_x_N).epsilon(1e-9));
 }
 
 TEST_CASE("steady sliding: what a slide of two contact radii, step by step, ends in, within 0.2 %") {
@@ -127,8 +129,8 @@ TEST_CASE("steady sliding: what a slide of two contact radii, step by step, ends
         const ToolForce formula = steady(tool, {1.0, 0.0}, mu).tool[0];
         MESSAGE("mu ", mu, ": normal ", formula.normal_N / stepped.normal_N - 1.0, ", tangential ",
                 formula.tangential_x_N / stepped.tangential_x_N - 1.0, " off the step-by-step solver");
-        CHECK(formula.normal_N == doctest::Approx(stepped.normal_N).epsilon(0.002));
-        CHECK(formula.tangential_x_N == doctest::Approx(stepped.tangential_x_N).epsilon(0.002));
+        CHECK(formula.normal_N == close_to(stepped.normal_N).epsilon(0.002));
+        CHECK(formula.tangential_x_N == close_to(stepped.tangential_x_N).epsilon(0.002));
     }
 }
 
@@ -137,7 +139,7 @@ TEST_CASE("steady sliding: Gauss-Seidel alone gives the same forces") {
     const Contact direct = steady(tool, {0.6, 0.8}, 0.5);
     const Contact swept = steady(tool, {0.6, 0.8}, 0.5, 0);
     CHECK(swept.touch == direct.touch);
-    CHECK(swept.tool[0].normal_N == doctest::Approx(direct.tool[0].normal_N).epsilon(1e-9));
+    CHECK(swept.tool[0].normal_N == close_to(direct.tool[0].normal_N).epsilon(1e-9));
     const Contact unfinished = steady(tool, {0.6, 0.8}, 0.5, 0, 1);  // one sweep is not enough, and says so
     CHECK(unfinished.flags.not_settled);
     CHECK(unfinished.violation_m > 0.0);

@@ -4,6 +4,7 @@
 
 #include "mechanics/error.h"
 #include "mechanics/voxel_cells.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/paper_beams.h"
 
 using namespace palpa::mechanics;
@@ -70,7 +71,7 @@ TEST_CASE(
     const HexMatrix one = cells_of(voxels, 4, alike).stiffness_N_per_m[0];
     const auto filled = static_cast<double>(counts.of_material[0] + counts.of_material[1]);
     const double one_J = filled / 64.0 * 0.5 * strain.dot(stress_Pa(alike[0], strain));
-    CHECK(0.5 * stretched.reshaped().dot(one * stretched.reshaped()) == doctest::Approx(one_J).epsilon(1e-5));
+    CHECK(0.5 * stretched.reshaped().dot(one * stretched.reshaped()) == close_to(one_J).epsilon(1e-5));
 }
 
 TEST_CASE(
@@ -98,9 +99,9 @@ TEST_CASE(
         };
         const int along = (axis + 1) % 3;
         const double series_Pa = 1.0 / (0.75 / 8e9 + 0.25 / 2e9), parallel_Pa = 0.75 * 8e9 + 0.25 * 2e9;
-        CHECK(energy_J(axis, axis) == doctest::Approx(series_Pa).epsilon(1e-9));
-        CHECK(energy_J(along, axis) == doctest::Approx(0.5 * series_Pa).epsilon(1e-9));
-        CHECK(energy_J(along, along) == doctest::Approx(parallel_Pa).epsilon(1e-9));
+        CHECK(energy_J(axis, axis) == close_to(series_Pa).epsilon(1e-9));
+        CHECK(energy_J(along, axis) == close_to(0.5 * series_Pa).epsilon(1e-9));
+        CHECK(energy_J(along, along) == close_to(parallel_Pa).epsilon(1e-9));
     }
 }
 
@@ -110,7 +111,7 @@ TEST_CASE("voxel cells: equal patterns share a matrix, empty cells are left out"
     CHECK(bands.stiffness_N_per_m.size() == 2);
     const VoxelCells wide = cells_of(paper_beam(PaperBeam::hshsh, 100), 3, kHardAndSoft);
     CHECK(wide.n == std::array<int, 3>{34, 4, 4});
-    CHECK(wide.cell_m == doctest::Approx(0.003));
+    CHECK(wide.cell_m == close_to(0.003));
     Voxels hollow = paper_beam(PaperBeam::homogeneous, 100);
     EditHistory history;
     apply({EditKind::remove, {BoxRegion{{0.02, 0.004, 0.004}, {0.04, 0.008, 0.008}}}, 0, {}}, hollow, history);

@@ -8,6 +8,7 @@
 #include "mechanics/statics.h"
 #include "mechanics/voxel_load.h"
 #include "mechanics/voxel_solve.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/paper_beams.h"
 
 using namespace palpa::mechanics;
@@ -43,11 +44,11 @@ double tip_mm(PaperBeam kind, int along) {
 }  // namespace
 
 TEST_CASE("voxels: five beams of 80 x 8 x 8 cells (thirds 90 x 9 x 9) to 1e-6 of the same element elsewhere") {
-    CHECK(tip_mm(PaperBeam::homogeneous, 80) == doctest::Approx(0.4816322).epsilon(1e-6));
-    CHECK(tip_mm(PaperBeam::hshsh, 80) == doctest::Approx(1.0044452).epsilon(1e-6));
-    CHECK(tip_mm(PaperBeam::shshs, 80) == doctest::Approx(1.4321732).epsilon(1e-6));
-    CHECK(tip_mm(PaperBeam::hsh, 90) == doctest::Approx(0.5028904).epsilon(1e-6));
-    CHECK(tip_mm(PaperBeam::shs, 90) == doctest::Approx(1.7670337).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::homogeneous, 80) == close_to(0.4816322).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::hshsh, 80) == close_to(1.0044452).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::shshs, 80) == close_to(1.4321732).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::hsh, 90) == close_to(0.5028904).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::shs, 90) == close_to(1.7670337).epsilon(1e-6));
 }
 
 TEST_CASE("voxels: full cells give every displacement of factorise() on the same mesh") {
@@ -124,11 +125,11 @@ TEST_CASE("voxels: cells 1/64 full neither stop the solver nor change the answer
     const Cantilever plain = cantilever(voxels, 4, kHardAndSoft);
     for (int x = 0; x < 80; x += 8) set_line(0, 8, {{x, x + 1, 0}}, voxels);
     const Cantilever studded = cantilever(voxels, 4, kHardAndSoft);
-    CHECK(*std::min_element(studded.cells.share.begin(), studded.cells.share.end()) == doctest::Approx(1.0 / 64.0));
+    CHECK(*std::min_element(studded.cells.share.begin(), studded.cells.share.end()) == close_to(1.0 / 64.0));
     const VoxelSolution one = solve(make_multigrid(plain.level, 30), plain.load_N, {1e-6, 500});
     const VoxelSolution other = solve(make_multigrid(studded.level, 30), studded.load_N, {1e-6, 500});
     CHECK(other.converged);
-    CHECK(other.work_J == doctest::Approx(one.work_J).epsilon(1e-3));
+    CHECK(other.work_J == close_to(one.work_J).epsilon(1e-3));
 }
 
 TEST_CASE("voxels: a load of another size or with NaN is refused, no load moves nothing") {

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "parts/info.h"
+#include "tests/close_to.h"
 #include "tests/parts/small_part.h"
 
 using namespace palpa;
@@ -13,10 +14,10 @@ TEST_CASE("part info: volume, mass, centroid and sizes of a beam that is half so
     CHECK(info.voxels == 320);
     CHECK(info.runs == 2 * 16);
     CHECK(info.plain_bytes == 320);
-    CHECK(info.volume_m3 == doctest::Approx(40e-9));
-    CHECK(info.mass_kg == doctest::Approx(20e-9 * (1200 + 1020)));
-    CHECK(info.centroid_m[0] == doctest::Approx(1e-3 * (2.5 * 1200 + 7.5 * 1020) / 2220));
-    CHECK(info.centroid_m[1] == doctest::Approx(1e-3));
+    CHECK(info.volume_m3 == close_to(40e-9));
+    CHECK(info.mass_kg == close_to(20e-9 * (1200 + 1020)));
+    CHECK(info.centroid_m[0] == close_to(1e-3 * (2.5 * 1200 + 7.5 * 1020) / 2220));
+    CHECK(info.centroid_m[1] == close_to(1e-3));
     CHECK(info.runs_sha256.size() == 64);
 }
 
@@ -30,7 +31,7 @@ TEST_CASE("part info: permute and its inverse give the same hash, and the mass c
     const auto n = static_cast<double>(before.voxels_of_material[0] - swapped.voxels_of_material[0]);
     CHECK(n > 10);
     CHECK(swapped.voxels == before.voxels);
-    CHECK(swapped.mass_kg - before.mass_kg == doctest::Approx(n * 0.125e-9 * (1020 - 1200)).epsilon(1e-9));
+    CHECK(swapped.mass_kg - before.mass_kg == close_to(n * 0.125e-9 * (1020 - 1200)).epsilon(1e-9));
     json["shape"].push_back({{"permute", ball}, {"material", "hard"}, {"from", "soft"}});
     CHECK(info_of(parsed(json)).runs_sha256 == before.runs_sha256);
 }

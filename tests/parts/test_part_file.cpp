@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/parts/small_part.h"
 
@@ -15,7 +16,7 @@ TEST_CASE("part file: voxels, materials, supports and loads in SI units") {
     const Part part = parsed(small_part());
     CHECK(part.name == "small");
     CHECK(part.voxels.size == std::array<int, 3>{20, 4, 4});
-    CHECK(part.voxels.frame.pitch_m == doctest::Approx(5e-4));
+    CHECK(part.voxels.frame.pitch_m == close_to(5e-4));
     CHECK(part.voxels_per_cell == 1);
     CHECK(material_at(part.voxels, 9, 0, 0) == 0);
     CHECK(material_at(part.voxels, 10, 3, 3) == 1);
@@ -24,7 +25,7 @@ TEST_CASE("part file: voxels, materials, supports and loads in SI units") {
     REQUIRE(part.supports.size() == 1);
     CHECK(part.supports[0].face == Side::xmin);
     REQUIRE(part.loads.size() == 2);
-    CHECK(part.loads[1].at_m[0] == doctest::Approx(8e-3));
+    CHECK(part.loads[1].at_m[0] == close_to(8e-3));
     CHECK(part.loads[1].direction == Point{0.0, 0.0, -1.0});
     CHECK(part.loads[1].force_N == 1.0);
     CHECK(part.axis == 0);
@@ -45,7 +46,7 @@ TEST_CASE("part file: an operation that is appended and dropped, and the same pa
 }
 
 TEST_CASE("part file: Gent's modulus of Shore A 50 is 2.456 MPa") {
-    CHECK(young_Pa_of_shore_A(50.0) == doctest::Approx(2.4558e6).epsilon(1e-3));
+    CHECK(young_Pa_of_shore_A(50.0) == close_to(2.4558e6).epsilon(1e-3));
     Json json = small_part();
     json["materials"]["soft"].erase("young_Pa");
     json["materials"]["soft"]["shore_A"] = 50;

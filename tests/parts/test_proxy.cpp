@@ -8,6 +8,7 @@
 
 using namespace palpa;
 using namespace palpa::parts;
+using namespace palpa::test;
 using palpa::test::close_to;
 
 namespace {

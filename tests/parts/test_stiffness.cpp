@@ -49,7 +49,7 @@ TEST_CASE("part stiffness: a slender beam, all methods agree and say against wha
         CHECK(result.answered);
         CHECK(result.why_not.empty());
         CHECK(result.converged);
-        CHECK(result.stiffness_N_per_m * result.displacement_m == doctest::Approx(1.0));
+        CHECK(result.stiffness_N_per_m * result.displacement_m == close_to(1.0));
         CHECK(result.error.has_value() == (result.method != Method::factorised));
         if (result.error) CHECK(std::abs(*result.error) < (result.method == Method::voxels ? 1e-6 : 0.03));
         if (result.error) CHECK(result.against == "factorised");
@@ -65,7 +65,7 @@ TEST_CASE("part stiffness: a force over a patch bends less than at the tip, a sk
     PartLoad skew = part.loads[0];
     skew.direction = {0.6, 0.0, -0.8};
     const auto beams = stiffness_of(part, skew, {{Method::timoshenko}, {}, 1e-8});
-    CHECK(beams[0].displacement_m == doctest::Approx(0.64 * tip[1].displacement_m));
+    CHECK(beams[0].displacement_m == close_to(0.64 * tip[1].displacement_m));
 }
 
 TEST_CASE("part stiffness: each method says when it does not apply") {
@@ -117,7 +117,7 @@ TEST_CASE("part stiffness: cells of 0.7 to 1 mm that fit neither bands nor secti
     const double fine_mm = neck_mm(0.4);
     for (const double cell_mm : {0.7, 0.9, 1.0}) {
         CAPTURE(cell_mm);
-        CHECK(neck_mm(cell_mm) == doctest::Approx(fine_mm).epsilon(0.03));
+        CHECK(neck_mm(cell_mm) == close_to(fine_mm).epsilon(0.03));
     }
 }
 

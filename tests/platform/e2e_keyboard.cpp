@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "platform/keyboard.h"
+#include "tests/close_to.h"
 #include "tests/platform/e2e_scripts.h"
 
 using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::xorg;
+using namespace palpa::test;
 
 TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do not; losing the focus cancels") {
     Window window(small_window());
@@ -85,7 +87,7 @@ TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do
             hardest = std::max(hardest, sample.pressure);
     }
     CHECK(hardest > 0.9);  // held for 1 s of 1 s
-    CHECK(downs[1].pressure == doctest::Approx(0.2));
+    CHECK(downs[1].pressure == close_to(0.2));
     CHECK(downs[1].x_px == downs[0].x_px);
     CHECK(downs[2].x_px > downs[1].x_px);  // Space and arrow of the panel's turn did nothing
 

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "platform/held_pressure.h"
+#include "tests/close_to.h"
 #include "tests/platform/e2e_scripts.h"
 
 using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::xorg;
+using namespace palpa::test;
 
 namespace {
 
@@ -134,7 +136,7 @@ TEST_CASE("panel: presses that start on it reach no tissue, and it hears of each
         }
         REQUIRE(presses.size() == 12);
         CHECK(presses.front().phase == Phase::down);
-        CHECK(presses.front().x_px == doctest::Approx(400.0).epsilon(1e-3));
+        CHECK(presses.front().x_px == close_to(400.0).epsilon(1e-3));
         CHECK(presses.back().phase == Phase::up);
     }
 }
@@ -181,9 +183,9 @@ TEST_CASE("mouse: every motion, pressure by holding and by wheel") {
     CHECK(std::abs(static_cast<double>(held.size()) - held_s * palpa::platform::kHoldGrid_Hz) <= 2.0);
     CHECK(downs[0].pressure == 0.0);
     const double by_time = (moves[99].t_host_s - downs[0].t_host_s) / 1.0;
-    CHECK(moves[99].pressure == doctest::Approx(by_time).epsilon(1e-9));
+    CHECK(moves[99].pressure == close_to(by_time).epsilon(1e-9));
     CHECK(by_time > 0.15);
-    CHECK(downs[1].pressure == doctest::Approx(0.3));
-    CHECK(moves[101].pressure == doctest::Approx(0.2));
-    CHECK(window.mouse_pressure() == doctest::Approx(0.2));
+    CHECK(downs[1].pressure == close_to(0.3));
+    CHECK(moves[101].pressure == close_to(0.2));
+    CHECK(window.mouse_pressure() == close_to(0.2));
 }

@@ -5,9 +5,11 @@
 
 #include "platform/held_pressure.h"
 #include "platform/hold_press.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::platform;
+using namespace palpa::test;
 
 namespace {
 
@@ -60,9 +62,9 @@ TEST_CASE("hold press: a still finger presses harder on the grid, its raw value 
         CAPTURE(i);
         CHECK(out[i].phase == Phase::move);
         CHECK(out[i].t_host_s == grid_time_s(240 + static_cast<std::int64_t>(i) + 1));
-        CHECK(out[i].pressure == doctest::Approx((out[i].t_host_s - 1.001) / 2.0).epsilon(1e-9));
+        CHECK(out[i].pressure == close_to((out[i].t_host_s - 1.001) / 2.0).epsilon(1e-9));
         CHECK(out[i].pressure_raw == 77.0);
-        CHECK(out[i].x_px == doctest::Approx(10.01));
+        CHECK(out[i].x_px == close_to(10.01));
         CHECK(std::isnan(out[i].t_device_s));
     }
 }
@@ -75,7 +77,7 @@ TEST_CASE("hold press: a device that keeps sending gets no samples added") {
     REQUIRE(out.size() == 500);
     for (std::size_t i = 0; i < out.size(); ++i) {
         CHECK(out[i].t_device_s == moving[i].t_device_s);
-        CHECK(out[i].pressure == doctest::Approx(0.001 * static_cast<double>(i)).epsilon(1e-9));
+        CHECK(out[i].pressure == close_to(0.001 * static_cast<double>(i)).epsilon(1e-9));
     }
 }
 
@@ -101,8 +103,8 @@ TEST_CASE("hold press: two fingers and a pen, in order of time, however often it
         if (often[i].tool == Tool::pen) CHECK(often[i].pressure == 1.0);  // not chosen
         if (often[i].tool == Tool::finger) ++of_finger[often[i].pointer_id - 7];
     }
-    CHECK(of_finger[0] == doctest::Approx(0.5 * 240).epsilon(0.03));
-    CHECK(of_finger[1] == doctest::Approx(0.3 * 240).epsilon(0.03));
+    CHECK(of_finger[0] == close_to(0.5 * 240).epsilon(0.03));
+    CHECK(of_finger[1] == close_to(0.3 * 240).epsilon(0.03));
 }
 
 TEST_CASE("hold press: a press begins anew, a hold time of zero is full at once, rows of the program pass") {

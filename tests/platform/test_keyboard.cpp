@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "platform/keyboard.h"
+#include "tests/close_to.h"
 
 using palpa::platform::Keyboard;
 using palpa::platform::Phase;
@@ -71,8 +72,8 @@ TEST_CASE("keyboard: an arrow moves the cursor on the grid, hovering, and says w
     REQUIRE(out.size() == 121);  // grid points in (1000.001, 1000.502], and the stop
     for (std::size_t i = 0; i < 120; ++i) {
         CAPTURE(i);
-        CHECK(out[i].t_host_s == doctest::Approx(1000.0 + static_cast<double>(i + 1) * kTick_s).epsilon(1e-12));
-        CHECK(out[i].x_px == doctest::Approx(300.0 + 120.0 * (out[i].t_host_s - 1000.001)).epsilon(1e-9));
+        CHECK(out[i].t_host_s == test::close_to(1000.0 + static_cast<double>(i + 1) * kTick_s).epsilon(1e-12));
+        CHECK(out[i].x_px == test::close_to(300.0 + 120.0 * (out[i].t_host_s - 1000.001)).epsilon(1e-9));
     }
     for (const Sample& sample : out) {
         CHECK(sample.phase == Phase::hover);
@@ -82,7 +83,7 @@ TEST_CASE("keyboard: an arrow moves the cursor on the grid, hovering, and says w
         CHECK(sample.pressure == 0.0);
         CHECK(sample.y_px == 200.0);
     }
-    CHECK(out[120].x_px == doctest::Approx(300.0 + 120.0 * 0.501).epsilon(1e-9));
+    CHECK(out[120].x_px == test::close_to(300.0 + 120.0 * 0.501).epsilon(1e-9));
     out.clear();
     hold_keys(1002.0, keyboard, out);
     CHECK(out.empty());
@@ -103,8 +104,8 @@ TEST_CASE("keyboard: two arrows are as fast as one, Shift is slower, opposite ar
         set_slow(0.5, c.slow, keyboard);
         for (const PointerKey key : c.keys) down(1.0, key, keyboard, out);
         hold_keys(2.0, keyboard, out);
-        CHECK(keyboard.x_px == doctest::Approx(300.0 + c.dx_px).epsilon(1e-9));
-        CHECK(keyboard.y_px == doctest::Approx(200.0 + c.dy_px).epsilon(1e-9));
+        CHECK(keyboard.x_px == test::close_to(300.0 + c.dx_px).epsilon(1e-9));
+        CHECK(keyboard.y_px == test::close_to(200.0 + c.dy_px).epsilon(1e-9));
     }
     Keyboard keyboard = keyboard_on();
     std::vector<Sample> out;
@@ -112,7 +113,7 @@ TEST_CASE("keyboard: two arrows are as fast as one, Shift is slower, opposite ar
     hold_keys(1.5, keyboard, out);
     set_slow(1.5, true, keyboard);  // in the middle of the way, from there on
     hold_keys(2.0, keyboard, out);
-    CHECK(keyboard.x_px == doctest::Approx(300.0 + 60.0 + 60.0 * palpa::platform::kSlowShare).epsilon(1e-9));
+    CHECK(keyboard.x_px == test::close_to(300.0 + 60.0 + 60.0 * palpa::platform::kSlowShare).epsilon(1e-9));
 }
 
 TEST_CASE("keyboard: a held press key presses harder, repeats count once, the cursor may move meanwhile") {
@@ -132,10 +133,10 @@ TEST_CASE("keyboard: a held press key presses harder, repeats count once, the cu
     for (std::size_t i = 1; i + 1 < out.size(); ++i) {
         CAPTURE(i);
         CHECK(out[i].phase == Phase::move);
-        CHECK(out[i].pressure == doctest::Approx((out[i].t_host_s - 5.0) / 2.0).epsilon(1e-9));
+        CHECK(out[i].pressure == test::close_to((out[i].t_host_s - 5.0) / 2.0).epsilon(1e-9));
         CHECK(out[i].t_host_s >= out[i - 1].t_host_s);
     }
-    CHECK(out.back().y_px == doctest::Approx(200.0 + 0.25 * 120.0).epsilon(1e-9));
+    CHECK(out.back().y_px == test::close_to(200.0 + 0.25 * 120.0).epsilon(1e-9));
 }
 
 TEST_CASE("keyboard: the level keys work as a wheel does") {
@@ -144,10 +145,10 @@ TEST_CASE("keyboard: the level keys work as a wheel does") {
     for (int i = 0; i < 4; ++i) down(1.0, PointerKey::harder, keyboard, out);
     CHECK(out.empty());
     down(2.0, PointerKey::press, keyboard, out);
-    CHECK(out.back().pressure == doctest::Approx(4 * palpa::platform::kLevelStep));
+    CHECK(out.back().pressure == test::close_to(4 * palpa::platform::kLevelStep));
     down(2.5, PointerKey::softer, keyboard, out);
     CHECK(out.back().phase == Phase::move);
-    CHECK(out.back().pressure == doctest::Approx(3 * palpa::platform::kLevelStep));
+    CHECK(out.back().pressure == test::close_to(3 * palpa::platform::kLevelStep));
     CHECK(out.back().t_host_s == 2.5);
 }
 

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "platform/mouse.h"
+#include "tests/close_to.h"
 
 using palpa::platform::Mouse;
 using palpa::platform::Phase;
@@ -23,7 +24,7 @@ TEST_CASE("mouse pressure: rises with time from 0 to 1 and stays there") {
     for (const auto& [after_s, pressure] : {std::pair{0.0, 0.0}, {0.5, 0.25}, {1.0, 0.5}, {2.0, 1.0}, {9.0, 1.0}}) {
         CAPTURE(after_s);
         CHECK(palpa::platform::pressure_at(mouse.button, 1000.0 + after_s) ==
-              doctest::Approx(pressure).epsilon(kRounding));
+              test::close_to(pressure).epsilon(kRounding));
     }
     palpa::platform::release_mouse(1003.0, 8.0, mouse, out);
     CHECK(palpa::platform::pressure_at(mouse.button, 1004.0) == 0.0);
@@ -53,9 +54,9 @@ TEST_CASE("mouse pressure: a still button gives one sample per grid point, on th
     REQUIRE(out.size() == 240);  // grid points in (1000.001, 1001.001]
     for (std::size_t i = 0; i < out.size(); ++i) {
         CAPTURE(i);
-        CHECK(out[i].t_host_s == doctest::Approx(1000.0 + static_cast<double>(i + 1) * kHoldTick_s).epsilon(1e-12));
+        CHECK(out[i].t_host_s == test::close_to(1000.0 + static_cast<double>(i + 1) * kHoldTick_s).epsilon(1e-12));
         CHECK(out[i].phase == Phase::move);
-        CHECK(out[i].pressure == doctest::Approx((out[i].t_host_s - 1000.001) / 2.0).epsilon(kRounding));
+        CHECK(out[i].pressure == test::close_to((out[i].t_host_s - 1000.001) / 2.0).epsilon(kRounding));
         CHECK(std::isnan(out[i].t_device_s));
     }
 }
@@ -97,8 +98,8 @@ TEST_CASE("mouse pressure: the wheel during a press takes over where holding has
     palpa::platform::turn_wheel(11.0, 1.0, 2.0, mouse, out);
     REQUIRE(out.size() == 2);
     CHECK(out[1].phase == Phase::move);
-    CHECK(out[1].pressure == doctest::Approx(0.6));
-    CHECK(palpa::platform::pressure_at(mouse.button, 20.0) == doctest::Approx(0.6));  // time counts no more
+    CHECK(out[1].pressure == test::close_to(0.6));
+    CHECK(palpa::platform::pressure_at(mouse.button, 20.0) == test::close_to(0.6));  // time counts no more
     palpa::platform::turn_wheel(21.0, 2.0, -100.0, mouse, out);
     CHECK(out[2].pressure == 0.0);
     CHECK(palpa::platform::pressure_at(mouse.button, 30.0) == 0.0);
@@ -112,10 +113,10 @@ TEST_CASE("mouse pressure: the wheel before a press sets it, and turned to zero 
     palpa::platform::turn_wheel(1.0, 0.0, 4.0, mouse, out);
     CHECK(out.empty());
     palpa::platform::press_mouse(2.0, 0.0, mouse, out);
-    CHECK(out[0].pressure == doctest::Approx(0.2));
-    CHECK(palpa::platform::pressure_at(mouse.button, 5.0) == doctest::Approx(0.2));
+    CHECK(out[0].pressure == test::close_to(0.2));
+    CHECK(palpa::platform::pressure_at(mouse.button, 5.0) == test::close_to(0.2));
     palpa::platform::release_mouse(6.0, 0.0, mouse, out);
     palpa::platform::turn_wheel(7.0, 0.0, -4.0, mouse, out);
     palpa::platform::press_mouse(8.0, 0.0, mouse, out);
-    CHECK(palpa::platform::pressure_at(mouse.button, 9.0) == doctest::Approx(0.5));
+    CHECK(palpa::platform::pressure_at(mouse.button, 9.0) == test::close_to(0.5));
 }

@@ -3,9 +3,11 @@
 #include <random>
 
 #include "platform/timeline.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::platform;
+using namespace palpa::test;
 
 namespace {
 
@@ -38,10 +40,10 @@ TEST_CASE("hard case 11: samples stamped in one go by the host keep the spacing 
         const double t_s = 1e-3 * i;
         const double frame_s = std::ceil(t_s * 60.0) / 60.0;  // the host sees them once a frame
         REQUIRE(move_to(at(50.0 + frame_s, 7.0 + t_s), timeline));
-        if (i > 1000) CHECK(timeline.now_s - before_s == doctest::Approx(1e-3).epsilon(0.11));
+        if (i > 1000) CHECK(timeline.now_s - before_s == close_to(1e-3).epsilon(0.11));
         before_s = timeline.now_s;
     }
-    CHECK(timeline.now_s == doctest::Approx(50.0 + 5.999).epsilon(1e-4));
+    CHECK(timeline.now_s == close_to(50.0 + 5.999).epsilon(1e-4));
     CHECK(timeline.clock_jumps == 0);
 }
 
@@ -68,7 +70,7 @@ TEST_CASE("hard case 11: a device clock that runs at another rate, is set, or ji
     }
     CHECK(move_to(at(60.001, 9999.0), timeline));  // set forward by hours
     CHECK(timeline.clock_jumps == 1);
-    CHECK(timeline.now_s == doctest::Approx(60.001));
+    CHECK(timeline.now_s == close_to(60.001));
     CHECK_FALSE(move_to(at(60.002, 9998.8), timeline));
     CHECK(timeline.backwards == 1);
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "platform/linux/xinput_decode.h"
+#include "tests/close_to.h"
 
 using palpa::platform::Axis;
 using palpa::platform::Phase;
@@ -101,15 +102,15 @@ TEST_CASE("xinput: axes become px, pressure and degrees") {
     CHECK(sample->tool == Tool::pen);
     CHECK(sample->phase == Phase::hover);
     CHECK(sample->pointer_id == palpa::platform::pen_pointer_id(kPen));
-    CHECK(sample->x_px == doctest::Approx(640.0 - 140.0));
-    CHECK(sample->y_px == doctest::Approx(200.0 - 50.0));
+    CHECK(sample->x_px == test::close_to(640.0 - 140.0));
+    CHECK(sample->y_px == test::close_to(200.0 - 50.0));
     CHECK(sample->pressure_raw == 250.0);
-    CHECK(sample->pressure == doctest::Approx(0.25));
+    CHECK(sample->pressure == test::close_to(0.25));
     CHECK(sample->tilt_x_deg == -30.0);
-    CHECK(sample->tilt_y_deg == doctest::Approx(30.0).epsilon(1e-3));  // 57.3 counts per degree
+    CHECK(sample->tilt_y_deg == test::close_to(30.0).epsilon(1e-3));  // 57.3 counts per degree
     CHECK(std::isnan(sample->width_px));
     CHECK(sample->t_host_s == 77.0);
-    CHECK(sample->t_device_s == doctest::Approx(5.0));
+    CHECK(sample->t_device_s == test::close_to(5.0));
 }
 
 TEST_CASE("xinput: an axis that an event leaves out keeps its value") {
@@ -117,9 +118,9 @@ TEST_CASE("xinput: an axis that an event leaves out keeps its value") {
     decode(Fake(XiKind::motion, kPen, kPen, {{0, 32768.0}, {1, 16384.0}, {4, 250.0}}), state);
     const auto sample = decode(Fake(XiKind::motion, kPen, kPen, {{1, 32768.0}}), state);
     REQUIRE(sample);
-    CHECK(sample->x_px == doctest::Approx(640.0));
-    CHECK(sample->y_px == doctest::Approx(400.0));
-    CHECK(sample->pressure == doctest::Approx(0.25));
+    CHECK(sample->x_px == test::close_to(640.0));
+    CHECK(sample->y_px == test::close_to(400.0));
+    CHECK(sample->pressure == test::close_to(0.25));
 }
 
 TEST_CASE("xinput: axes between two that are there do not shift values") {
@@ -128,7 +129,7 @@ TEST_CASE("xinput: axes between two that are there do not shift values") {
     const auto sample =
         decode(Fake(XiKind::motion, kPen, kPen, {{0, 0.0}, {1, 0.0}, {2, 7.0}, {3, 7.0}, {4, 500.0}, {9, 7.0}}), state);
     REQUIRE(sample);
-    CHECK(sample->pressure == doctest::Approx(0.5));
+    CHECK(sample->pressure == test::close_to(0.5));
 }
 
 TEST_CASE("xinput: what a device does not have is missing") {
@@ -160,7 +161,7 @@ TEST_CASE("xinput: a mask longer than the values is survived") {
     fake.event.values = fake.event.values.first(2);
     const auto sample = decode(fake, state);
     REQUIRE(sample);
-    CHECK(sample->x_px == doctest::Approx(640.0));
+    CHECK(sample->x_px == test::close_to(640.0));
     CHECK(std::isnan(sample->pressure));
 }
 
@@ -217,11 +218,11 @@ TEST_CASE("xinput: two fingers keep their own values") {
     CHECK(first->tool == Tool::finger);
     CHECK(first->phase == Phase::down);
     CHECK(first->pointer_id == 1);
-    CHECK(first->x_px == doctest::Approx(100.0));
-    CHECK(first->y_px == doctest::Approx(150.0));
-    CHECK(first->pressure == doctest::Approx(0.25));
-    CHECK(first->width_px == doctest::Approx(40.0));
-    CHECK(first->height_px == doctest::Approx(15.0));
+    CHECK(first->x_px == test::close_to(100.0));
+    CHECK(first->y_px == test::close_to(150.0));
+    CHECK(first->pressure == test::close_to(0.25));
+    CHECK(first->width_px == test::close_to(40.0));
+    CHECK(first->height_px == test::close_to(15.0));
 
     const auto second = touch(XiKind::touch_begin, 2, {{0, 500.0}, {1, 500.0}});
     REQUIRE(second);
@@ -229,8 +230,8 @@ TEST_CASE("xinput: two fingers keep their own values") {
     const auto moved = touch(XiKind::touch_update, 1, {{2, 138.0}});
     REQUIRE(moved);
     CHECK(moved->phase == Phase::move);
-    CHECK(moved->pressure == doctest::Approx(0.5));
-    CHECK(moved->x_px == doctest::Approx(100.0));
+    CHECK(moved->pressure == test::close_to(0.5));
+    CHECK(moved->x_px == test::close_to(100.0));
     CHECK(touch(XiKind::touch_end, 1, {})->phase == Phase::up);
     CHECK_FALSE(touch(XiKind::touch_update, 1, {{2, 10.0}}));
     CHECK(state.touches.size() == 1);
@@ -240,8 +241,8 @@ TEST_CASE("xinput: a touch screen without a minor axis reports circles") {
     XiState state = new_state();
     state.devices[1].touch_minor = {};
     const auto sample = decode(Fake(XiKind::touch_begin, kMaster, kTouch, {{0, 200.0}, {1, 300.0}, {3, 40.0}}), state);
-    CHECK(sample->width_px == doctest::Approx(40.0));
-    CHECK(sample->height_px == doctest::Approx(20.0));  // two counts per px that way
+    CHECK(sample->width_px == test::close_to(40.0));
+    CHECK(sample->height_px == test::close_to(20.0));  // two counts per px that way
 }
 
 TEST_CASE("xinput: the server's clock goes on over a wrap") {
@@ -251,7 +252,7 @@ TEST_CASE("xinput: the server's clock goes on over a wrap") {
     Fake after(XiKind::motion, kPen, kPen, {{0, 2.0}, {1, 1.0}});
     after.event.time_ms = 4;
     const double first_s = decode(before, state)->t_device_s;
-    CHECK(decode(after, state)->t_device_s - first_s == doctest::Approx(0.010));
+    CHECK(decode(after, state)->t_device_s - first_s == test::close_to(0.010));
 }
 
 TEST_CASE("xinput: pointers of an unplugged device are told") {

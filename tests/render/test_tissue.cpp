@@ -9,6 +9,7 @@
 #include "platform/window.h"
 #include "render/gl.h"
 #include "render/tissue.h"
+#include "tests/close_to.h"
 #include "tests/off_screen.h"
 
 using namespace palpa;
@@ -93,11 +94,11 @@ TEST_CASE("tissue: what is straight below the eye, or on the undisturbed surface
     for (const float height_m : {-0.02f, -0.007f, 0.0f, 0.004f}) {
         const glm::vec2 px = project_px(view, {view.eye_m, height_m});
         const glm::vec2 expected_px = project_px(flat, {view.eye_m, 0.0f});
-        CHECK(px.x == doctest::Approx(expected_px.x));
-        CHECK(px.y == doctest::Approx(expected_px.y));
+        CHECK(px.x == close_to(expected_px.x));
+        CHECK(px.y == close_to(expected_px.y));
     }
     for (const glm::vec2 p_m : {glm::vec2(-0.02f, 0.01f), glm::vec2(0.025f, -0.01f)}) {
-        CHECK(project_px(view, {p_m, 0.0f}).x == doctest::Approx(project_px(flat, {p_m, 0.0f}).x));
+        CHECK(project_px(view, {p_m, 0.0f}).x == close_to(project_px(flat, {p_m, 0.0f}).x));
         // deeper is farther away, so it looks nearer to the place below the eye
         const glm::vec2 eye_px = project_px(view, {view.eye_m, 0.0f});
         const float deep_px = std::abs(project_px(view, {p_m, -0.01f}).x - eye_px.x);

@@ -3,6 +3,7 @@
 
 #include "scene/advance.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
@@ -105,7 +106,7 @@ TEST_CASE("advance: a contact says when and where it was") {
     CHECK(run.state.contact.p_m == tissue_of_px(run.state.view, px));
     const double pressed_s = run.state.contact.time_s;
     run.feed(pen(3.0, Phase::up, px, 0.0));
-    CHECK(run.state.contact.time_s == doctest::Approx(pressed_s + 0.5));
+    CHECK(run.state.contact.time_s == close_to(pressed_s + 0.5));
     CHECK(run.state.contact.p_m == run.state.touch.p_m);
 }
 
@@ -116,9 +117,9 @@ TEST_CASE("hard case 4: force only while touching") {
     CHECK(run.state.contact.normal_N == 0.0);
     CHECK(run.state.contact.depth_m == 0.0);
     run.feed(pen(0.01, Phase::down, middle, 0.0));
-    CHECK(run.state.contact.normal_N == doctest::Approx(0.1008));
+    CHECK(run.state.contact.normal_N == close_to(0.1008));
     run.feed(pen(0.02, Phase::move, middle, 1.5));
-    CHECK(run.state.contact.normal_N == doctest::Approx(6.77632).epsilon(1e-4));
+    CHECK(run.state.contact.normal_N == close_to(6.77632).epsilon(1e-4));
     CHECK(run.state.contact.saturated);
     CHECK(run.state.counters.levels_clamped == 1);
     run.feed(pen(0.03, Phase::up, middle, 0.7));
@@ -246,7 +247,7 @@ TEST_CASE("advance: the avatar between samples is where the next sample of a res
             State copy = run.state;
             advance(run.scene, run.plan, pen(t_s, Phase::move, px_at(0.01 + 0.03 * 143 / 240.0)), copy);
             CHECK((expected.lag_m - copy.avatar.lag_m).norm() < 1e-12);
-            CHECK(expected.delay_s == doctest::Approx(copy.avatar.delay_s));
+            CHECK(expected.delay_s == close_to(copy.avatar.delay_s));
         }
     }
 }
@@ -280,7 +281,7 @@ TEST_CASE("advance: a pen that reports full pressure in its first sample presses
     CHECK(run.state.counters.distrusted == 1);
     CHECK(run.state.counters.levels_clamped == 0);
     run.feed(pen(0.01, Phase::move, middle, 0.1));
-    CHECK(run.state.contact.normal_N == doctest::Approx(0.1008 * std::exp(0.42081)).epsilon(1e-6));
+    CHECK(run.state.contact.normal_N == close_to(0.1008 * std::exp(0.42081)).epsilon(1e-6));
     run.feed(pen(0.02, Phase::move, middle, 0.95));  // a move may be as hard as it likes
     CHECK(run.state.contact.normal_N > 5.0);
     CHECK(run.state.extremes.force_at_s > 0.015);

@@ -4,6 +4,7 @@
 #include "scene/cues.h"
 #include "scene/plan.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::scene;
@@ -13,11 +14,11 @@ TEST_CASE("cues: each grows with depth, and none is drawn without a depth") {
     const DrawnCues cues{0.7, 0.6, 0.5, false};
     const CueValues shallow = cues_at(cues, 4e-3, 1e-3);
     const CueValues deep = cues_at(cues, 4e-3, 6e-3);
-    CHECK(shallow.footprint_m == doctest::Approx(4.7e-3));
-    CHECK(deep.footprint_m == doctest::Approx(8.2e-3));
-    CHECK(shallow.crease == doctest::Approx(0.2));
-    CHECK(deep.crease == doctest::Approx(0.45));
-    CHECK(deep.drawn_depth_m == doctest::Approx(9e-3));
+    CHECK(shallow.footprint_m == close_to(4.7e-3));
+    CHECK(deep.footprint_m == close_to(8.2e-3));
+    CHECK(shallow.crease == close_to(0.2));
+    CHECK(deep.crease == close_to(0.45));
+    CHECK(deep.drawn_depth_m == close_to(9e-3));
     for (const double depth_m : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN()}) {
         const CueValues none = cues_at(cues, 4e-3, depth_m);
         CHECK(none.footprint_m == 0.0);

@@ -5,6 +5,7 @@
 #include "scene/advance.h"
 #include "scene/tissue.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/scene/allocations.h"
 #include "tests/temporary_folder.h"
@@ -31,11 +32,11 @@ ForceCurve stiffening() { return {20.0, 3e-3, {}, {}, 8e-3}; }
 
 TEST_CASE("force curve: F = k d exp(d / g), its slope by differences, and its inverse") {
     const ForceCurve curve = stiffening();
-    CHECK(force_at_N(curve, 6e-3) == doctest::Approx(0.12 * std::exp(2.0)).epsilon(1e-14));
+    CHECK(force_at_N(curve, 6e-3) == close_to(0.12 * std::exp(2.0)).epsilon(1e-14));
     for (const double d : {0.0, 1e-6, 0.5e-3, 3e-3, 7.9e-3}) {
         const double h = 1e-8;
         CHECK(slope_at_N_per_m(curve, d + h) ==
-              doctest::Approx((force_at_N(curve, d + 2.0 * h) - force_at_N(curve, d)) / (2.0 * h)).epsilon(1e-6));
+              close_to((force_at_N(curve, d + 2.0 * h) - force_at_N(curve, d)) / (2.0 * h)).epsilon(1e-6));
         CHECK(std::abs(depth_of_m(curve, force_at_N(curve, d)) - d) < 1e-14);
     }
     CHECK(depth_of_m(curve, 1e9) == 8e-3);
@@ -49,14 +50,14 @@ TEST_CASE("force curve: points, at, between and beyond them") {
     curve.depth_m = {0.0, 2e-3, 4e-3};
     curve.force_N = {0.0, 0.1, 0.5};
     curve.greatest_depth_m = 4e-3;
-    CHECK(force_at_N(curve, 1e-3) == doctest::Approx(0.05));
-    CHECK(force_at_N(curve, 2e-3) == doctest::Approx(0.1));
-    CHECK(force_at_N(curve, 3e-3) == doctest::Approx(0.3));
-    CHECK(force_at_N(curve, 9e-3) == doctest::Approx(0.5));
-    CHECK(depth_of_m(curve, 0.3) == doctest::Approx(3e-3));
+    CHECK(force_at_N(curve, 1e-3) == close_to(0.05));
+    CHECK(force_at_N(curve, 2e-3) == close_to(0.1));
+    CHECK(force_at_N(curve, 3e-3) == close_to(0.3));
+    CHECK(force_at_N(curve, 9e-3) == close_to(0.5));
+    CHECK(depth_of_m(curve, 0.3) == close_to(3e-3));
     CHECK(depth_of_m(curve, 0.6) == 4e-3);
-    CHECK(slope_at_N_per_m(curve, 1e-3) == doctest::Approx(50.0));
-    CHECK(slope_at_N_per_m(curve, 3e-3) == doctest::Approx(200.0));
+    CHECK(slope_at_N_per_m(curve, 1e-3) == close_to(50.0));
+    CHECK(slope_at_N_per_m(curve, 3e-3) == close_to(200.0));
 }
 
 TEST_CASE("force curve: a touch sinks to the depth of its force, at any stiffness of the scene, and saturates") {
@@ -67,7 +68,7 @@ TEST_CASE("force curve: a touch sinks to the depth of its force, at any stiffnes
     Press press{{0.06, 0.06}, 0.2, {1.0, 0.0}, true, 2.0};
     Contact contact;
     answer(plan.tissue, StageId::depth, press, work, contact);
-    CHECK(2.0 * force_at_N(stiffening(), contact.depth_m) == doctest::Approx(0.2));
+    CHECK(2.0 * force_at_N(stiffening(), contact.depth_m) == close_to(0.2));
     CHECK_FALSE(contact.saturated);
     press.force_N = 100.0;
     const auto before = allocations();
@@ -76,8 +77,8 @@ TEST_CASE("force curve: a touch sinks to the depth of its force, at any stiffnes
     CHECK(rise_N(plan.tissue, {}, work) == 0.0);
     const Push push = push_to(plan.tissue, {0.06, 0.06}, 6e-3, work);
     CHECK(allocations() == before);
-    CHECK(push.force_N == doctest::Approx(force_at_N(stiffening(), 6e-3)));
-    CHECK(push.slope_N_per_m == doctest::Approx(slope_at_N_per_m(stiffening(), 6e-3)));
+    CHECK(push.force_N == close_to(force_at_N(stiffening(), 6e-3)));
+    CHECK(push.slope_N_per_m == close_to(slope_at_N_per_m(stiffening(), 6e-3)));
     CHECK(push_to(plan.tissue, {}, -1e-3, work).force_N == 0.0);
     CHECK(push_to(plan.tissue, {}, 9e-3, work).saturated);
 }

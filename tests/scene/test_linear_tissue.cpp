@@ -45,14 +45,14 @@ TEST_CASE("linear tissue: harder sinks deeper, over the nodule less than beside 
         const LinearAnswer beside = press(block.tissue, {0.045, 0.030}, force_N, block.work);
         CHECK(beside.depth_m > before_m);
         CHECK_FALSE(beside.saturated);
-        CHECK(block.work.contact.tool[0].normal_N == doctest::Approx(force_N).epsilon(1e-6));
+        CHECK(block.work.contact.tool[0].normal_N == close_to(force_N).epsilon(1e-6));
         before_m = beside.depth_m;
         CHECK(press(block.tissue, {0.024, 0.030}, force_N, block.work).depth_m < 0.9 * beside.depth_m);
     }
     CHECK(press(block.tissue, {0.045, 0.030}, 0.0, block.work).depth_m == 0.0);
     const LinearAnswer deep = press(block.tissue, {0.045, 0.030}, 100.0, block.work);
     CHECK(deep.saturated);
-    CHECK(deep.depth_m == doctest::Approx(0.45 * 0.020));
+    CHECK(deep.depth_m == close_to(0.45 * 0.020));
     CHECK(deep.linearity > 0.25);  // red
 }
 
@@ -96,10 +96,9 @@ TEST_CASE("linear tissue: resists on the way to the nodule, lets go behind it, m
     };
     CHECK(along_x(0.016, 1.0) > 5e-3);
     CHECK(along_x(0.032, 1.0) == 0.0);
-    CHECK(along_x(0.032, -1.0) == doctest::Approx(along_x(0.016, 1.0)).epsilon(0.25));  // the near side differs
+    CHECK(along_x(0.032, -1.0) == close_to(along_x(0.016, 1.0)).epsilon(0.25));  // the near side differs
     CHECK(tangential_force_N(block.tissue, {0.024, 0.022}, {0.0, 1.0}, depth_m, block.work) ==
-          doctest::Approx(tangential_force_N(block.tissue, {0.024, 0.038}, {0.0, -1.0}, depth_m, block.work))
-              .epsilon(1e-6));
+          close_to(tangential_force_N(block.tissue, {0.024, 0.038}, {0.0, -1.0}, depth_m, block.work)).epsilon(1e-6));
     CHECK(along_x(0.016, 0.0) == 0.0);
 }
 
@@ -109,7 +108,7 @@ TEST_CASE("linear tissue: the surface sinks to the depth under the tool and come
     Eigen::VectorXd sink_m;
     surface_sink_m(block.tissue, block.work, sink_m);
     REQUIRE(sink_m.size() == static_cast<Eigen::Index>(block.tissue.n_x * block.tissue.n_y));
-    CHECK(sink_m.maxCoeff() == doctest::Approx(answer.depth_m).epsilon(0.02));
+    CHECK(sink_m.maxCoeff() == close_to(answer.depth_m).epsilon(0.02));
     CHECK(std::abs(sink_m[0]) < 0.1 * answer.depth_m);
 }
 
@@ -159,7 +158,7 @@ TEST_CASE(
         REQUIRE(!block.work.sliding.flags.not_settled);
     }
     // 5 %: the rough contact is as deep as the smooth one, and so presses a little more or less
-    CHECK(block.work.drag_N.x() == doctest::Approx(mu * force_N).epsilon(0.05));
+    CHECK(block.work.drag_N.x() == close_to(mu * force_N).epsilon(0.05));
     CHECK(rough_tangential_force_N(block.tissue, {x_m, y_m}, {1.0, 0.0}, block.work.depth_m, block.work) > 0.2);
     CHECK(rough_tangential_force_N(block.tissue, {x_m, y_m}, {-1.0, 0.0}, block.work.depth_m, block.work) == 0.0);
     const double slid_N = block.work.drag_N.x();
@@ -171,7 +170,7 @@ TEST_CASE(
     };
     leap_to(0.001);
     leap_to(x_m);
-    CHECK(leap.work.drag_N.x() == doctest::Approx(slid_N).epsilon(0.02));
+    CHECK(leap.work.drag_N.x() == close_to(slid_N).epsilon(0.02));
     // a long way in one call is walked in half spacings
     LinearWork walked = make_work(block.tissue);
     for (const double at_m : {0.022, 0.024, 0.026, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, walked);
@@ -179,10 +178,10 @@ TEST_CASE(
     for (const double at_m : {0.022, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, at_once);
     REQUIRE(at_once.friction.touch == walked.friction.touch);
     for (std::size_t i = 0; i < walked.friction.force_N.size(); ++i) {
-        CHECK(at_once.friction.force_N[i] == doctest::Approx(walked.friction.force_N[i]).epsilon(1e-9));
+        CHECK(at_once.friction.force_N[i] == close_to(walked.friction.force_N[i]).epsilon(1e-9));
     }
     while (x_m > 0.024) slide_to(x_m -= 2e-4);
-    CHECK(block.work.drag_N.x() == doctest::Approx(-mu * force_N).epsilon(0.05));
+    CHECK(block.work.drag_N.x() == close_to(-mu * force_N).epsilon(0.05));
     drag(block.tissue, {x_m, y_m}, 0.0, block.work);
     CHECK(block.work.drag_N.isZero(0.0));
     CHECK(block.work.friction.touch.empty());

@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include "scene/mapping.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::scene;
+using namespace palpa::test;
 
 namespace {
 
@@ -25,7 +27,7 @@ TEST_CASE("mapping: direct mapping draws a point where the pen that means it is,
                 CHECK((px_of_tissue(view, tissue_of_px(view, px)) - px).norm() < 1e-9);
             }
             CHECK((tissue_of_px(view, {640, 400}) - kArea.centre_m).norm() < 1e-15);
-            CHECK(std::abs(view.axes.determinant()) == doctest::Approx(1.0));
+            CHECK(std::abs(view.axes.determinant()) == close_to(1.0));
         }
     }
 }
@@ -80,14 +82,14 @@ TEST_CASE("mapping: direct mapping is true to size where the screen's scale is k
     constexpr double kScale_px_per_m = 3780.0;  // 96 per inch
     const ScreenArea known{1000, 700, 236, 0, kScale_px_per_m};
     const View view = make_view({}, kArea, known);
-    CHECK(view.px_per_m == doctest::Approx(kScale_px_per_m));
-    CHECK(view.scale == doctest::Approx(1.0));
+    CHECK(view.px_per_m == close_to(kScale_px_per_m));
+    CHECK(view.scale == close_to(1.0));
     CHECK((tissue_of_px(view, {236 + 500, 350}) - kArea.centre_m).norm() < 1e-12);
 
     const View small = make_view({}, kArea, {300, 300, 0, 0, kScale_px_per_m});
-    CHECK(small.scale == doctest::Approx(0.94 * 300 / 0.12 / kScale_px_per_m));
+    CHECK(small.scale == close_to(0.94 * 300 / 0.12 / kScale_px_per_m));
     Mapping fitted;
     fitted.true_size = false;
-    CHECK(make_view(fitted, kArea, known).px_per_m == doctest::Approx(0.94 * 700 / 0.10));
+    CHECK(make_view(fitted, kArea, known).px_per_m == close_to(0.94 * 700 / 0.10));
     CHECK(std::isnan(make_view({}, kArea, {1000, 700}).scale));
 }

@@ -3,6 +3,7 @@
 #include "files/text.h"
 #include "scene/tissue.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -57,13 +58,13 @@ TEST_CASE("scene file: presets and what overrides them") {
         with(R"(, "avatar": {"display_ratio": {"preset": "clear", "f_0_N": 0.05, "cap_mm": null, "s_ref_mm": 0.5}})"));
     CHECK(own.display_ratio->f_0_N == 0.05);
     CHECK_FALSE(own.display_ratio->cap_m);
-    CHECK(own.display_ratio->path.reference_m == doctest::Approx(5e-4));
+    CHECK(own.display_ratio->path.reference_m == close_to(5e-4));
     const Scene delay = read(with(
         R"(, "avatar": {"delay": {"preset": "clear", "m_ms_per_N": 1000, "force": "recorded", "smoothing_mm": 1.5}})"));
     CHECK(delay.delay->m_s_per_N == 1.0);
-    CHECK(delay.delay->cap_s == doctest::Approx(0.15));
+    CHECK(delay.delay->cap_s == close_to(0.15));
     CHECK(delay.tangential.force == TangentialForce::recorded);
-    CHECK(*delay.tangential.smoothing_m == doctest::Approx(1.5e-3));
+    CHECK(*delay.tangential.smoothing_m == close_to(1.5e-3));
 }
 
 TEST_CASE("scene file: the look of the surface and the cues that are drawn with it") {
@@ -92,7 +93,7 @@ TEST_CASE("scene file: strength stands for f_0 and m on one scale, and 0 removes
     CHECK(ratio(R"("preset": "clear", "strength": 2)").display_ratio->cap_m == 3e-3);
     CHECK(ratio(R"("preset": "paper", "strength": 2)").display_ratio->f_0_N == 0.01);
     CHECK(delay(R"("preset": "strong")").delay->m_s_per_N == 12.0);
-    CHECK(delay(R"("preset": "strong")").delay->cap_s == doctest::Approx(0.4));
+    CHECK(delay(R"("preset": "strong")").delay->cap_s == close_to(0.4));
     CHECK(delay(R"("preset": "clear", "strength": 0.5)").delay->m_s_per_N == 1.5);
     for (const Scene& scene : {ratio(R"("preset": "strong", "strength": 0, "smoothing_mm": 3, "s_ref_mm": 1)"),
                                delay(R"("preset": "strong", "strength": 0, "smoothing_mm": 3, "s_ref_mm": 1)")}) {
@@ -160,7 +161,7 @@ TEST_CASE("scene file: parts, every key, and wrong ones by name") {
     CHECK(options->designs.front() == kAssets / "parts" / "button.json");
     CHECK(options->load == "cap");
     CHECK(options->method == palpa::parts::Method::timoshenko);
-    CHECK(*options->cell_m == doctest::Approx(2e-3));
+    CHECK(*options->cell_m == close_to(2e-3));
     CHECK(options->gesture == PartGesture::pull);
     CHECK(options->view == std::array{1, 0});
     CHECK(options->both);

@@ -4,6 +4,7 @@
 #include "scene/plan.h"
 #include "scene/tissue.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/scene/allocations.h"
 #include "tests/temporary_folder.h"
@@ -40,7 +41,7 @@ TEST_CASE("soft block: what a device feels step by step is what a pen's force re
     TissueWork pen = make_work(plan.tissue);
     Contact contact;
     answer(plan.tissue, StageId::depth, {{}, push.force_N, {}, true, 1.0}, pen, contact);
-    CHECK(contact.depth_m == doctest::Approx(4e-3).epsilon(2e-3));
+    CHECK(contact.depth_m == close_to(4e-3).epsilon(2e-3));
     CHECK(push_to(plan.tissue, {}, 6e-3, finger).saturated);
 }
 

@@ -3,6 +3,7 @@
 #include "files/text.h"
 #include "scene/tissue.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -50,7 +51,7 @@ TEST_CASE("tactile file: every key is read") {
         "table": {"spacing_mm": 2, "error": 0.001}, "force_limit_N": 15, "leads": "arm"})")
                                         .tactile;
     CHECK(options.finger.contact == FingerContact::pad);
-    CHECK(options.finger.diameter_m == doctest::Approx(14e-3));
+    CHECK(options.finger.diameter_m == close_to(14e-3));
     CHECK(options.finger.pad == kAssets / "fingers" / "soft.json");
     CHECK(options.arm->impedance == ArmImpedance::high);
     CHECK(options.arm->device == kAssets / "devices" / "arm.json");
@@ -60,7 +61,7 @@ TEST_CASE("tactile file: every key is read") {
     CHECK(options.display->sheet == SheetBacking::backed);
     CHECK(options.display->schedule == PinSchedule::locked);
     CHECK(options.display->dither);
-    CHECK(options.table->spacing_m == doctest::Approx(2e-3));
+    CHECK(options.table->spacing_m == close_to(2e-3));
     CHECK(options.table->error == 0.001);
     CHECK(options.force_limit_N == 15.0);
     CHECK(options.leads == Leads::arm);

@@ -7,6 +7,7 @@
 #include "files/text.h"
 #include "session/history.h"
 #include "session/replay.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -63,7 +64,7 @@ TEST_CASE("history: what is kept of a trial is what is read back") {
     CHECK(back.scene == trial.scene);
     CHECK(back.mode == TrialMode::test);
     CHECK(back.rotate_deg == 90);
-    CHECK(back.clock_s == doctest::Approx(trial.clock_s).epsilon(1e-3));
+    CHECK(back.clock_s == close_to(trial.clock_s).epsilon(1e-3));
     REQUIRE(back.nodules.size() == trial.nodules.size());
     CHECK(back.nodules[0].finding == Finding::found);
     REQUIRE(back.marks.size() == 2);
@@ -74,7 +75,7 @@ TEST_CASE("history: what is kept of a trial is what is read back") {
     double previous_s = 0.0;
     for (std::size_t i = 0; i < back.path.size(); ++i) {
         CHECK(back.path[i].time_s >= previous_s);
-        CHECK(back.path[i].x_mm == doctest::Approx(trial.path[i].x_mm).epsilon(1e-3));
+        CHECK(back.path[i].x_mm == close_to(trial.path[i].x_mm).epsilon(1e-3));
         previous_s = back.path[i].time_s;
     }
 }
@@ -107,14 +108,14 @@ TEST_CASE("history: path and marks have the times of the person's clock, without
     send(194.0, Phase::ui, Action::mark, x_m + 9e-3);
     send(195.0, Phase::ui, Action::finish, x_m);
     const KeptTrial trial = kept_trial(session, "2026-11-21T09:30:00Z");
-    CHECK(trial.clock_s == doctest::Approx(5.0));
+    CHECK(trial.clock_s == close_to(5.0));
     REQUIRE(trial.path.size() == 3);
-    CHECK(trial.path[0].time_s == doctest::Approx(0.0));
-    CHECK(trial.path[1].time_s == doctest::Approx(1.0));
-    CHECK(trial.path[2].time_s == doctest::Approx(3.0));
+    CHECK(trial.path[0].time_s == close_to(0.0));
+    CHECK(trial.path[1].time_s == close_to(1.0));
+    CHECK(trial.path[2].time_s == close_to(3.0));
     REQUIRE(trial.marks.size() == 1);
-    CHECK(trial.marks[0].time_s == doctest::Approx(4.0));
-    CHECK(session.trial.marks[0].onset_s == doctest::Approx(94.0));  // in the log: since the trial began
+    CHECK(trial.marks[0].time_s == close_to(4.0));
+    CHECK(session.trial.marks[0].onset_s == close_to(94.0));  // in the log: since the trial began
 }
 
 TEST_CASE("history: trials of one second do not overwrite each other, and only trials are deleted") {

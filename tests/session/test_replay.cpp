@@ -8,6 +8,7 @@
 #include "scene/mapping.h"
 #include "session/raster_trace.h"
 #include "session/replay.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -158,7 +159,7 @@ TEST_CASE("replay: a trial's log is that of the live trial, byte for byte, finis
     CHECK(contains(events, "\t90\t1\t"));
     Json settings = parse_json(text("again", "_settings.json"), "settings");
     CHECK(settings["finger_offset_mm"] == 15.0);
-    CHECK(settings["screen_px_per_mm"].get<double>() == doctest::Approx(4.7));
+    CHECK(settings["screen_px_per_mm"].get<double>() == close_to(4.7));
     CHECK(contains(text("again", "_performance.json"), "began_utc"));
 }
 
@@ -281,5 +282,5 @@ TEST_CASE("replay: a trace made at another rate gives the same lags") {
         Session session;
         lag_m[i] = result_of(raster_trace(scene, plan, options), session).over[0].lag_m;
     }
-    CHECK(lag_m[1] == doctest::Approx(lag_m[0]).epsilon(0.03));  // jitter and rounding differ
+    CHECK(lag_m[1] == close_to(lag_m[0]).epsilon(0.03));  // jitter and rounding differ
 }

@@ -8,6 +8,7 @@
 #include "files/table.h"
 #include "session/tactile_run.h"
 #include "session/tactile_run_sink.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/tactile/tactile_scene.h"
@@ -112,7 +113,7 @@ TEST_CASE("tactile run: a press by force is pressed by force") {
     choose_input(press, *plan);
     CHECK(plan->input == tactile::InputKind::force);
     const TactileResult result = run_virtual(plan, {press, {}, 1});
-    CHECK(result.steps.max_force_N == doctest::Approx(2.5));
+    CHECK(result.steps.max_force_N == close_to(2.5));
     CHECK(result.steps.held_steps > 0);
     CHECK(result.steps.held_steps < result.steps.steps / 2);
 }
@@ -134,7 +135,7 @@ TEST_CASE("tactile run: a press for a simulated participant: force, depth and tr
         CHECK(height_m <= 2e-3 + 1e-9);
     }
     const TactileRecord locked = run_press(slab.scene, *slab.plan, press, {1, scene::PinSchedule::locked});
-    CHECK(locked.height_m.back() == doctest::Approx(2e-3).epsilon(1e-3));
+    CHECK(locked.height_m.back() == close_to(2e-3).epsilon(1e-3));
 }
 
 // A port that says what a test wants.
@@ -184,17 +185,17 @@ TEST_CASE("tactile run: link silent: after 100 ms the force is zero and the pins
         }
     };
     run(0.0, 0.5, true);
-    CHECK(sent.arm.force_N == doctest::Approx(1.0));
-    CHECK(sent.pins_m[0] == doctest::Approx(1e-3));
+    CHECK(sent.arm.force_N == close_to(1.0));
+    CHECK(sent.pins_m[0] == close_to(1e-3));
     run(0.5, 0.55, false);
-    CHECK(sent.arm.force_N == doctest::Approx(1.0));  // not yet
+    CHECK(sent.arm.force_N == close_to(1.0));  // not yet
     run(0.55, 0.62, false);
     CHECK(sent.arm.force_N == 0.0);
     CHECK(sent.pins_m[0] == plan->pin_rest_m);
     CHECK(guarded.guard.fault == devices::Fault::silence);
     run(0.62, 1.2, true);
-    CHECK(sent.arm.force_N == doctest::Approx(1.0));
-    CHECK(sent.pins_m[0] == doctest::Approx(1e-3));
+    CHECK(sent.arm.force_N == close_to(1.0));
+    CHECK(sent.pins_m[0] == close_to(1e-3));
 }
 
 TEST_CASE("tactile run: user faster than everything: what is sent stays within limits and slews") {
@@ -319,13 +320,13 @@ TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes o
         }
     };
     press_for(200, 1.0);
-    CHECK(moment.force_N == doctest::Approx(1.0));
+    CHECK(moment.force_N == close_to(1.0));
     CHECK(moment.rows == 6);
     CHECK(moment.reached == ReachedBy::estimate);
     CHECK(std::string(moment.fault) == "");
     press_for(100, 9.0);
     CHECK(moment.held);
-    CHECK(moment.force_N == doctest::Approx(2.5));
+    CHECK(moment.force_N == close_to(2.5));
     live.stop();
     press_for(100, 1.0);
     CHECK(moment.force_N == 0.0);
@@ -333,7 +334,7 @@ TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes o
     CHECK(std::string(moment.fault) == "stopped");
     live.restart();
     press_for(100, 1.0);
-    CHECK(moment.force_N == doctest::Approx(1.0));
+    CHECK(moment.force_N == close_to(1.0));
     CHECK_FALSE(moment.stopped);
     const files::Json report = live.report();
     CHECK(report["held_steps"].get<int>() > 0);

@@ -6,6 +6,7 @@
 #include "session/session.h"
 #include "session/trial.h"
 #include "study/read_logs.h"
+#include "tests/close_to.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -97,8 +98,8 @@ TEST_CASE("trial: found, pressed too lightly, never touched; marks with confiden
     CHECK(result.findings[1] == Finding::too_light);
     CHECK(result.findings[2] == Finding::not_touched);
     CHECK(result.score.false_positives == 1);
-    CHECK(result.score.sensitivity == doctest::Approx(1.0 / 3.0));
-    CHECK(result.score.ppv == doctest::Approx(0.5));
+    CHECK(result.score.sensitivity == close_to(1.0 / 3.0));
+    CHECK(result.score.ppv == close_to(0.5));
     CHECK(result.area.at_least[1] > 0.0);
     CHECK(result.area.at_least[1] < 0.05);
     REQUIRE(person.session.finished.size() == 1);
@@ -121,11 +122,11 @@ TEST_CASE("trial: a pen that lies on the screen without pressure does not press"
     person.sample(Phase::down, 40.0, 40.0, 0.5);
     for (int i = 0; i < 20; ++i) person.sample(Phase::move, 40.0, 40.0, 0.5);
     const double pressed_s = person.session.trial.pressed_s;
-    CHECK(pressed_s == doctest::Approx(0.2));
+    CHECK(pressed_s == close_to(0.2));
     for (int i = 0; i < 100; ++i) person.sample(Phase::move, 40.0, 40.0, 0.0);
     CHECK(person.session.trial.pressed_s == pressed_s);
     for (int i = 0; i < 11; ++i) person.sample(Phase::move, 40.0, 40.0, 0.5);
-    CHECK(person.session.trial.pressed_s == doctest::Approx(0.3));
+    CHECK(person.session.trial.pressed_s == close_to(0.3));
 }
 
 TEST_CASE("trial: a window that changes its size after a press leaves the place of the next mark on the tissue") {
@@ -216,16 +217,16 @@ TEST_CASE("session: a trial that is broken off keeps its marks with their places
         const auto row = events.rfind('\n', events.find("\tmark\t")) + 1;
         const auto fields = fields_of(std::string_view(events).substr(row, events.find('\n', row) - row), '\t');
         REQUIRE(fields.size() == 22);  // as it happens: a kill leaves them too
-        CHECK(std::stod(std::string(fields[20])) == doctest::Approx(30.0));
-        CHECK(std::stod(std::string(fields[21])) == doctest::Approx(40.0));
+        CHECK(std::stod(std::string(fields[20])) == close_to(30.0));
+        CHECK(std::stod(std::string(fields[21])) == close_to(40.0));
         note_event("device_gone", 1e9, person.session);
         CHECK(close_files({}, person.session));
     }
     const std::string marks = read_text(stem + "_marks.tsv");
     CHECK(std::count(marks.begin(), marks.end(), '\n') == 3);
     const auto first = fields_of(std::string_view(marks).substr(marks.find('\n') + 1), '\t');
-    CHECK(std::stod(std::string(first[3])) == doctest::Approx(30.0));
-    CHECK(std::stod(std::string(first[4])) == doctest::Approx(40.0));
+    CHECK(std::stod(std::string(first[3])) == close_to(30.0));
+    CHECK(std::stod(std::string(first[4])) == close_to(40.0));
     CHECK(first[5] == "3");
     const std::string events = read_text(stem + "_events.tsv");
     CHECK(events.find("\tdevice_gone\t") != std::string::npos);
@@ -267,20 +268,20 @@ TEST_CASE("trial: the clock starts at the first touch and stands still in a paus
     CHECK(clock() == 0.0);
     person.stroke(40.0, 40.0, 0.5);
     const double stroked_s = clock();
-    CHECK(stroked_s == doctest::Approx(0.18));
+    CHECK(stroked_s == close_to(0.18));
     person.t_s += 1.0;
     person.act(Action::pause);
     person.t_s += 30.0;
     person.act(Action::pause);  // it is stopped already
-    CHECK(clock_s(person.session.trial, person.t_s + 100.0) == doctest::Approx(stroked_s + 1.01));
+    CHECK(clock_s(person.session.trial, person.t_s + 100.0) == close_to(stroked_s + 1.01));
     person.act(Action::resume);
     person.act(Action::resume);  // it runs already
     person.t_s += 2.0;
     person.act(Action::finish);
     CHECK(person.session.trial.finished);
-    CHECK(clock() == doctest::Approx(stroked_s + 1.01 + 0.01 + 2.01));
+    CHECK(clock() == close_to(stroked_s + 1.01 + 0.01 + 2.01));
     CHECK(clock_s(person.session.trial, 1e6) == clock());
-    CHECK(person.session.finished[0]["clock_s"].get<double>() == doctest::Approx(clock()));
+    CHECK(person.session.finished[0]["clock_s"].get<double>() == close_to(clock()));
     CHECK(person.session.finished[0]["duration_s"].get<double>() > 40.0);
 }
 
@@ -292,5 +293,5 @@ TEST_CASE("trial: points of the path know when they were pressed") {
     const std::vector<PathPoint>& path = person.session.trial.path;
     REQUIRE(path.size() > 10);
     for (std::size_t i = 1; i < path.size(); ++i) CHECK(path[i].t_s >= path[i - 1].t_s);
-    CHECK(path.back().t_s - path.front().t_s == doctest::Approx(3.3).epsilon(0.05));
+    CHECK(path.back().t_s - path.front().t_s == close_to(3.3).epsilon(0.05));
 }

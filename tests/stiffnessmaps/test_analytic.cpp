@@ -4,19 +4,21 @@
 #include "files/json.h"
 #include "stiffnessmaps/analytic.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::stiffnessmaps;
+using namespace palpa::test;
 
 TEST_CASE("analytic: a thick layer is Hertz's half-space, a thin incompressible one has the printed coefficients") {
     const Elastic tissue{10e3, 0.5};
     const double hertz_N = 16.0 / 9.0 * 10e3 * std::sqrt(4e-3) * std::pow(1e-3, 1.5);
-    CHECK(layer_force_N(tissue, 4e-3, 1e-3, 1e3) == doctest::Approx(hertz_N).epsilon(1e-5));
+    CHECK(layer_force_N(tissue, 4e-3, 1e-3, 1e3) == close_to(hertz_N).epsilon(1e-5));
     // Dimitriadis 2002, bonded, nu = 0.5: 1 + 1.133 c + 1.283 c^2 + 0.769 c^3 + 0.0975 c^4
     const double c = std::sqrt(4e-3 * 1e-3) / 10e-3;
     const double layer = 1 + 1.133 * c + 1.283 * c * c + 0.769 * c * c * c + 0.0975 * c * c * c * c;
-    CHECK(layer_force_N(tissue, 4e-3, 1e-3, 10e-3) == doctest::Approx(hertz_N * layer).epsilon(1e-3));
+    CHECK(layer_force_N(tissue, 4e-3, 1e-3, 10e-3) == close_to(hertz_N * layer).epsilon(1e-3));
     CHECK(layer_force_N(tissue, 4e-3, 0.0, 10e-3) == 0.0);
 }
 
@@ -31,8 +33,7 @@ TEST_CASE("analytic: a map of the whole grid that says it is a stand-in, nodules
     for (const auto* forces : {&map.normal_N, &map.tangential_x_N, &map.tangential_y_N})
         CHECK(forces->size() == 6 * map.n_cells());
     const std::size_t cell = 20 * map.n_x + 40;
-    CHECK(map.normal_N[cell] ==
-          doctest::Approx(phantom_force_N(phantom, map.x_of(40), map.y_of(20), 2e-3)).epsilon(1e-6));
+    CHECK(map.normal_N[cell] == close_to(phantom_force_N(phantom, map.x_of(40), map.y_of(20), 2e-3)).epsilon(1e-6));
     const double a = phantom_force_N(phantom, 35e-3, 35e-3, 5e-3);
     const double b = phantom_force_N(phantom, 85e-3, 45e-3, 5e-3);
     const double c = phantom_force_N(phantom, 60e-3, 88e-3, 5e-3);
@@ -63,7 +64,7 @@ TEST_CASE(
         const auto j = static_cast<std::size_t>(std::lround((y_mm - 2.0) / 2.0));
         return static_cast<double>(array[depth * map.n_cells() + j * map.n_x + i]);
     };
-    CHECK(force_N(map.normal_N, 60, 60, 5) == doctest::Approx(3.0).epsilon(0.02));
+    CHECK(force_N(map.normal_N, 60, 60, 5) == close_to(3.0).epsilon(0.02));
     for (std::size_t k = 0; k < 6; ++k) {
         CAPTURE(k);
         const double a = force_N(map.normal_N, 35, 35, k);

@@ -8,6 +8,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/import/apart.h"
 #include "stiffnessmaps/import/arrays.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/array_writers.h"
 #include "tests/temporary_folder.h"
@@ -32,7 +33,7 @@ std::vector<Value> counted(std::size_t n, double step = 1.0) {
 void check_counted(const NpyArray& array, const std::vector<std::size_t>& shape, double step = 1.0) {
     CHECK(array.shape == shape);
     for (std::size_t i = 0; i < array.values.size(); ++i)
-        REQUIRE(array.values[i] == doctest::Approx(step * static_cast<double>(i)));
+        REQUIRE(array.values[i] == close_to(step * static_cast<double>(i)));
 }
 
 std::string refusal_of_array(const std::filesystem::path& path, const std::string& dataset = "") {

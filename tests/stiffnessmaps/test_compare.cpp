@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "stiffnessmaps/compare.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
@@ -27,7 +28,7 @@ TEST_CASE("compare: a map against itself differs by nothing") {
     const MapDifference d = compare_maps(map, "a", map, "b");
     CHECK(d.all.n == map.normal_N.size());
     CHECK(d.all.greatest_N < 1e-6);
-    CHECK(d.correlation == doctest::Approx(1.0));
+    CHECK(d.correlation == close_to(1.0));
     CHECK(d.grid_of == "a");
 }
 
@@ -38,12 +39,12 @@ TEST_CASE("compare: bias, median, RMS and the greatest difference with its place
     b.normal_N[2 * b.n_cells() + 4 * b.n_x + 7] += 3.0f;
     const MapDifference d = compare_maps(a, "a", b, "b");
     const auto n = static_cast<double>(d.all.n);
-    CHECK(d.all.median_N == doctest::Approx(0.25).epsilon(1e-4));
+    CHECK(d.all.median_N == close_to(0.25).epsilon(1e-4));
     CHECK(d.all.greatest_N >
           0.9);  // the curve over depth is made to rise, so a single spike is shared with its neighbours
-    CHECK(d.all.at_x_m == doctest::Approx(a.x_of(7)));
-    CHECK(d.all.at_y_m == doctest::Approx(a.y_of(4)));
-    CHECK(d.all.bias_N == doctest::Approx(0.25 + 3.0 / n).epsilon(1e-3));
+    CHECK(d.all.at_x_m == close_to(a.x_of(7)));
+    CHECK(d.all.at_y_m == close_to(a.y_of(4)));
+    CHECK(d.all.bias_N == close_to(0.25 + 3.0 / n).epsilon(1e-3));
     CHECK(d.depths.size() == kPaperDepths_m.size());
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("compare: on the coarser grid, the common area and the common depths")
             swapped ? compare_maps(coarse, "coarse", fine, "fine") : compare_maps(fine, "fine", coarse, "coarse");
         CHECK(d.grid_of == (swapped ? "a" : "b"));
         CHECK(d.depths_of == (swapped ? "a" : "b"));
-        CHECK(d.a.spacing_m[0] == doctest::Approx(3.7e-3));
+        CHECK(d.a.spacing_m[0] == close_to(3.7e-3));
         CHECK(d.a.n_depths() == 2);
         CHECK(d.a.n_x < 8);
         CHECK(d.a.x_of(d.a.n_x - 1) <= fine.x_of(40) + 0.5e-3 + 1e-9);

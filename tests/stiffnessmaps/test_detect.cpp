@@ -7,6 +7,7 @@
 #include "stiffnessmaps/import/detect.h"
 #include "stiffnessmaps/import/import.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
@@ -118,7 +119,7 @@ TEST_CASE("detect: planted nodules are found to within a cell of 1.58 mm, with t
             CHECK(r.sure);
             CHECK(away_m(r) < 1.58e-3);
             if (b.half_length_m > 0.0) {  // the flank falls to half at 1.18 sigma; smoothing widens it
-                CHECK(r.length_m == doctest::Approx(2.0 * b.half_length_m + 2.36 * b.sigma_m).epsilon(0.2));
+                CHECK(r.length_m == close_to(2.0 * b.half_length_m + 2.36 * b.sigma_m).epsilon(0.2));
                 CHECK(std::abs(r.angle_deg) < 8.0);
                 CHECK(r.length_m > 2.0 * r.width_m);
             } else {
@@ -178,12 +179,12 @@ TEST_CASE("detect: of the recorded small balls the clear one and the one that th
     const Detection d = detect_regions(recording("region_small_balls.csv"), "balls", {});
     REQUIRE(d.regions.size() == 2);
     CHECK(d.sure() == 2);
-    CHECK(d.regions[0].x_m == doctest::Approx(-32e-3).epsilon(0.03));
-    CHECK(d.regions[0].y_m == doctest::Approx(65.5e-3).epsilon(0.02));
+    CHECK(d.regions[0].x_m == close_to(-32e-3).epsilon(0.03));
+    CHECK(d.regions[0].y_m == close_to(65.5e-3).epsilon(0.02));
     CHECK(d.regions[0].contrast > 1.5);
     CHECK(d.regions[0].look == 1);
-    CHECK(d.regions[1].x_m == doctest::Approx(-29.4e-3).epsilon(0.03));
-    CHECK(d.regions[1].y_m == doctest::Approx(53.2e-3).epsilon(0.02));
+    CHECK(d.regions[1].x_m == close_to(-29.4e-3).epsilon(0.03));
+    CHECK(d.regions[1].y_m == close_to(53.2e-3).epsilon(0.02));
     CHECK(d.regions[1].contrast > 1.2);
     CHECK(d.regions[1].contrast < 1.4);
     CHECK(d.regions[1].at_edge);

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "stiffnessmaps/field.h"
+#include "tests/close_to.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
@@ -54,9 +55,9 @@ TEST_CASE("hard case 6: below the first and beyond the last depth, outside the g
     CHECK(depth_at(field, place, -1.0).depth_m == 0.0);
     CHECK(depth_at(field, place, std::nan("")).depth_m == 0.0);
     const double at_2_mm = normal_force_N(field, place, 2e-3);
-    CHECK(depth_at(field, place, 0.5 * at_2_mm).depth_m == doctest::Approx(1e-3));  // anchored at (0, 0)
+    CHECK(depth_at(field, place, 0.5 * at_2_mm).depth_m == close_to(1e-3));  // anchored at (0, 0)
     CHECK(depth_at(field, place, at_2_mm * (1 + 1e-9)).depth_m ==
-          doctest::Approx(depth_at(field, place, at_2_mm * (1 - 1e-9)).depth_m).epsilon(1e-8));
+          close_to(depth_at(field, place, at_2_mm * (1 - 1e-9)).depth_m).epsilon(1e-8));
     const DepthAnswer deep = depth_at(field, place, 1e6);
     CHECK(deep.saturated);
     CHECK(deep.depth_m == 7e-3);
@@ -82,18 +83,18 @@ TEST_CASE("hard case 6: cells that were not measured, cells with another greates
     const Place hole = place_at(field, {3e-3, 2e-3});
     CHECK_FALSE(hole.measured);
     CHECK(std::isfinite(normal_force_N(field, hole, 3e-3)));  // from its neighbours, so that motion stays smooth
-    CHECK(normal_force_N(field, hole, 3e-3) == doctest::Approx(rising(3e-3, 2e-3, 3e-3)).epsilon(0.05));
+    CHECK(normal_force_N(field, hole, 3e-3) == close_to(rising(3e-3, 2e-3, 3e-3)).epsilon(0.05));
     CHECK(place_at(field, {3.6e-3, 2e-3}).measured);
 
     const Place stops = place_at(field, {1e-3, 1e-3});
     CHECK(stops.measured);
     const DepthAnswer answer = depth_at(field, stops, 1e3);
     CHECK(answer.saturated);
-    CHECK(answer.depth_m == doctest::Approx(4e-3));
-    CHECK(depth_at(field, place_at(field, {1.5e-3, 1e-3}), 1e3).depth_m == doctest::Approx(5.5e-3));
+    CHECK(answer.depth_m == close_to(4e-3));
+    CHECK(depth_at(field, place_at(field, {1.5e-3, 1e-3}), 1e3).depth_m == close_to(5.5e-3));
 
     const Field single = make_field(map_of(1, 1, kPaperDepths_m, rising), {});
-    CHECK(depth_of(single, 0.0, 0.0, rising(0, 0, 4e-3)) == doctest::Approx(4e-3).epsilon(1e-6));
+    CHECK(depth_of(single, 0.0, 0.0, rising(0, 0, 4e-3)) == close_to(4e-3).epsilon(1e-6));
     CHECK(tangential_force_N(single, place_at(single, {0.0, 0.0}), {1.0, 0.0}, 4e-3) == 0.0);
 }
 
@@ -117,13 +118,13 @@ TEST_CASE("field: the tangential force is the slope of the energy, uphill only")
             (energy_J(p + Eigen::Vector2d(h, 0), depth) - energy_J(p - Eigen::Vector2d(h, 0), depth)) / (2 * h);
         const double along_y =
             (energy_J(p + Eigen::Vector2d(0, h), depth) - energy_J(p - Eigen::Vector2d(0, h), depth)) / (2 * h);
-        CHECK(g.x() == doctest::Approx(along_x).epsilon(1e-4));
-        CHECK(g.y() == doctest::Approx(along_y).epsilon(1e-4));
+        CHECK(g.x() == close_to(along_x).epsilon(1e-4));
+        CHECK(g.y() == close_to(along_y).epsilon(1e-4));
         const Place place = place_at(field, p);
         CHECK(tangential_force_N(field, place, {1, 0}, depth) == g.x());
         CHECK(tangential_force_N(field, place, {-1, 0}, depth) == 0.0);
         const Eigen::Vector2d u(0.6, 0.8);
-        CHECK(tangential_force_N(field, place, u, depth) == doctest::Approx(u.dot(g)));
+        CHECK(tangential_force_N(field, place, u, depth) == close_to(u.dot(g)));
     }
 }
 
@@ -141,15 +142,15 @@ TEST_CASE("field: a recorded tangential force is given back for +x uphill, its e
     const Field field = make_field(map, {});
     const Place place = place_at(field, {12.2e-3, 9.1e-3});
     const double g = energy_gradient_N(field, place, 5e-3).x();
-    CHECK(tangential_force_N(field, place, {1, 0}, 5e-3) == doctest::Approx(g + kRolling_N).epsilon(1e-5));
-    CHECK(tangential_force_N(field, place, {-1, 0}, 5e-3) == doctest::Approx(kRolling_N).epsilon(1e-5));
+    CHECK(tangential_force_N(field, place, {1, 0}, 5e-3) == close_to(g + kRolling_N).epsilon(1e-5));
+    CHECK(tangential_force_N(field, place, {-1, 0}, 5e-3) == close_to(kRolling_N).epsilon(1e-5));
     const TangentialAgreement agreement = tangential_agreement(map, field);
     CHECK(agreement.correlation > 0.99);
-    CHECK(agreement.slope == doctest::Approx(1.0).epsilon(1e-3));
+    CHECK(agreement.slope == close_to(1.0).epsilon(1e-3));
 
     FieldOptions as_recorded;
     as_recorded.force = TangentialForce::recorded;
     const Field replica = make_field(map, as_recorded);
-    CHECK(tangential_force_N(replica, place, {1, 0}, 5e-3) == doctest::Approx(g + kRolling_N).epsilon(1e-5));
-    CHECK(tangential_force_N(replica, place, {-1, 0}, 5e-3) == doctest::Approx(-g - kRolling_N).epsilon(1e-5));
+    CHECK(tangential_force_N(replica, place, {1, 0}, 5e-3) == close_to(g + kRolling_N).epsilon(1e-5));
+    CHECK(tangential_force_N(replica, place, {-1, 0}, 5e-3) == close_to(-g - kRolling_N).epsilon(1e-5));
 }

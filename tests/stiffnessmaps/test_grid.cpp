@@ -4,15 +4,17 @@
 #include <random>
 
 #include "stiffnessmaps/grid.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
+using namespace palpa::test;
 
 TEST_CASE("grid: isotonic regression is non-decreasing, keeps the sum, and is the closest such sequence") {
     std::vector<double> values{1, 3, 2, 4, 3, 3, 9};
     make_isotonic(values);
     const std::vector<double> expected{1, 2.5, 2.5, 10.0 / 3, 10.0 / 3, 10.0 / 3, 9};
-    for (std::size_t i = 0; i < values.size(); ++i) CHECK(values[i] == doctest::Approx(expected[i]));
+    for (std::size_t i = 0; i < values.size(); ++i) CHECK(values[i] == close_to(expected[i]));
 
     constexpr std::uint32_t kSeed = 5;
     CAPTURE(kSeed);
@@ -47,7 +49,7 @@ TEST_CASE("grid: smoothing keeps a constant, missing cells stay missing and weig
         if (i == 10) {
             CHECK(std::isnan(out[i]));
         } else {
-            CHECK(out[i] == doctest::Approx(5.0).epsilon(1e-14));
+            CHECK(out[i] == close_to(5.0).epsilon(1e-14));
         }
     }
     CHECK(smooth(std::vector<double>{1.0, 2.0}, {2, 1, 1.0, 1.0}, 0.0) == std::vector<double>{1.0, 2.0});
@@ -73,8 +75,8 @@ TEST_CASE("grid: gradient of a plane is exact, also at borders and on a single r
     }
     const Gradient g = gradient(values, shape);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        CHECK(g.x[i] == doctest::Approx(3.0));
-        CHECK(g.y[i] == doctest::Approx(-7.0));
+        CHECK(g.x[i] == close_to(3.0));
+        CHECK(g.y[i] == close_to(-7.0));
     }
     const Gradient one = gradient({1.0}, {1, 1, 1.0, 1.0});
     CHECK(one.x[0] == 0.0);

@@ -4,6 +4,7 @@
 #include "files/npy.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"
 #include "tests/temporary_folder.h"
@@ -47,8 +48,8 @@ TEST_CASE("map file: what is written reads back") {
     CHECK(back.n_x == 4);
     CHECK(back.n_y == 3);
     CHECK(missing_count(back) == 1);
-    CHECK(back.origin_m[0] == doctest::Approx(-4e-5));
-    CHECK(back.nodules[0].top_depth_m == doctest::Approx(6e-3));
+    CHECK(back.origin_m[0] == close_to(-4e-5));
+    CHECK(back.nodules[0].top_depth_m == close_to(6e-3));
     CHECK(contains(message_of([&] { write_map(map, folder / "x.map"); }), "nothing is overwritten"));
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }

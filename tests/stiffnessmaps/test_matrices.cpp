@@ -5,6 +5,7 @@
 #include "files/npy.h"
 #include "stiffnessmaps/import/matrices.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/close_to.h"
 #include "tests/stiffnessmaps/array_writers.h"
 #include "tests/stiffnessmaps/import_helpers.h"
 
@@ -50,14 +51,14 @@ TEST_CASE("matrices: one file per depth, normal and tangential, depths from the 
     CHECK(map.n_x == 4);
     CHECK(map.n_y == 3);
     REQUIRE(map.n_depths() == 3);
-    CHECK(map.depths_m[0] == doctest::Approx(2e-3));
-    CHECK(map.depths_m[2] == doctest::Approx(10e-3));
-    CHECK(map.normal_N[0] == doctest::Approx(0.6f));
-    CHECK(map.normal_N[2 * 12 + 4 + 1] == doctest::Approx(3.11f));
+    CHECK(map.depths_m[0] == close_to(2e-3));
+    CHECK(map.depths_m[2] == close_to(10e-3));
+    CHECK(map.normal_N[0] == close_to(0.6f));
+    CHECK(map.normal_N[2 * 12 + 4 + 1] == close_to(3.11f));
     CHECK(map.tangential == TangentialKind::recorded);
-    CHECK(map.tangential_x_N[2 * 12] == doctest::Approx(1.0f));
+    CHECK(map.tangential_x_N[2 * 12] == close_to(1.0f));
     CHECK(map.tangential_y_N.empty());
-    CHECK(map.x_of(1) == doctest::Approx(1.76e-3));
+    CHECK(map.x_of(1) == close_to(1.76e-3));
     CHECK(report.residual.worst_N < 1e-6);
     // what is written is a map like any other
     write_map(map, folder / "x.map");
@@ -114,7 +115,7 @@ TEST_CASE("matrices: a three-dimensional array in any order of its axes") {
     const Map map = import_recording({folder / "a.mat"}, options, report);
     CHECK(map.n_x == 4);
     CHECK(map.n_y == 3);
-    CHECK(map.normal_N[12 + 4 + 3] == doctest::Approx(2.13f));
+    CHECK(map.normal_N[12 + 4 + 3] == close_to(2.13f));
     options.axes = "dyx";
     CHECK(contains(message_of([&] { import_recording({folder / "a.mat"}, options, report); }),
                    "found 3 matrices, expected 2, one for each depth of --depths-mm (another order of axes: --axes)"));
@@ -141,22 +142,22 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
     const Map map = import_recording({folder / "e.png"}, options, report);
     // Hertz: 4/3 * 10 kPa / 0.75 * sqrt(4 mm) * (1 mm)^1.5
     const double wanted_N = 4.0 / 3.0 * 1e4 / 0.75 * std::sqrt(4e-3) * std::pow(1e-3, 1.5);
-    CHECK(map.normal_N[0] == doctest::Approx(wanted_N));
-    CHECK(map.normal_N[12] == doctest::Approx(8.0 * wanted_N));
+    CHECK(map.normal_N[0] == close_to(wanted_N));
+    CHECK(map.normal_N[12] == close_to(8.0 * wanted_N));
     CHECK(std::isnan(map.normal_N[5]));
-    CHECK(map.filled_normal_N[5] == doctest::Approx(wanted_N));
+    CHECK(map.filled_normal_N[5] == close_to(wanted_N));
     REQUIRE(report.notes.size() == 1);
     CHECK(contains(report.notes[0], "Hertz"));
     REQUIRE(choice_of(map, "contact_formula") != nullptr);
     options.indenter = IndenterShape::cylinder;
-    CHECK(elastic_force_N(1e4, 1e-3, options) == doctest::Approx(3.14159265 / 4.0 * 1e4 / 0.75 * 20e-3 * 1e-3));
+    CHECK(elastic_force_N(1e4, 1e-3, options) == close_to(3.14159265 / 4.0 * 1e4 / 0.75 * 20e-3 * 1e-3));
     // stiffness: a straight line
     write_text_whole(folder / "k.csv", "0.5,1\n2,n/a\n");
     options.quantity = Quantity::stiffness;
     options.scale = 1e3;
     options.scale_stated = false;
     const Map k = import_recording({folder / "k.csv"}, options, report);
-    CHECK(k.normal_N[4] == doctest::Approx(2.0f));
+    CHECK(k.normal_N[4] == close_to(2.0f));
     options.scale = 1e6;  // N/mm taken for kN/mm
     CHECK(contains(message_of([&] { import_recording({folder / "k.csv"}, options, report); }),
                    "expected from 0.001 to 1000 N/mm"));

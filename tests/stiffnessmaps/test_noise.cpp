@@ -3,6 +3,7 @@
 
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/noise.h"
+#include "tests/close_to.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
@@ -19,7 +20,7 @@ TEST_CASE("noise: white noise on a plane is estimated within 5 %, and smoothing 
     map.spacing_m[0] = 0.76e-3;
     map.spacing_m[1] = 2e-3;
     const double noise_N = normal_noise_N(map);
-    CHECK(noise_N == doctest::Approx(0.02).epsilon(0.05));
+    CHECK(noise_N == close_to(0.02).epsilon(0.05));
 
     const double sigma_m = smoothing_sigma_m(map, noise_N, 3e-4, 2e-3);
     CHECK(sigma_m > 1.5e-3);

@@ -3,6 +3,7 @@
 
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/import/sliding.h"
+#include "tests/close_to.h"
 #include "tests/stiffnessmaps/import_helpers.h"
 
 using namespace palpa;
@@ -65,11 +66,11 @@ TEST_CASE("sliding: under a sinusoidal force the surface is found, its tilt remo
     ImportReport report;
     const Map map = imported(raster(r), {}, &report);
     CHECK(report.form == RecordingForm::sliding);
-    CHECK(std::get<double>(choice_of(map, "surface_tilt_deg")->value) == doctest::Approx(8.6).epsilon(0.05));
+    CHECK(std::get<double>(choice_of(map, "surface_tilt_deg")->value) == close_to(8.6).epsilon(0.05));
     for (const double depth : {1.0, 1.5, 2.0, 2.4}) {
         CAPTURE(depth);
-        CHECK(force_in(map, 6.0, 6.0, depth) == doctest::Approx(kStiffness_N_per_mm * depth).epsilon(0.06));
-        CHECK(force_in(map, 20.0, 15.0, depth) == doctest::Approx(1.5 * kStiffness_N_per_mm * depth).epsilon(0.08));
+        CHECK(force_in(map, 6.0, 6.0, depth) == close_to(kStiffness_N_per_mm * depth).epsilon(0.06));
+        CHECK(force_in(map, 20.0, 15.0, depth) == close_to(1.5 * kStiffness_N_per_mm * depth).epsilon(0.08));
     }
     CHECK(report.residual.median_share() < 0.02);
     CHECK(report.residual.n > 5000);
@@ -89,7 +90,7 @@ TEST_CASE(
         n += 1.0;
     }
     CHECK(n > 100.0);
-    CHECK(sum / n == doctest::Approx(kFriction).epsilon(0.1));
+    CHECK(sum / n == close_to(kFriction).epsilon(0.1));
     ImportOptions none;
     none.tangential = TangentialChoice::none;
     CHECK(imported(raster(r), none).tangential_x_N.empty());
@@ -122,9 +123,9 @@ TEST_CASE("sliding: at constant depth the depth must be known, and is then kept 
     ImportReport report;
     const Map map = import_recording(files, options, report);
     REQUIRE(map.n_depths() == 3);
-    CHECK(map.depths_m[0] == doctest::Approx(1e-3));
-    CHECK(force_in(map, 20.0, 15.0, 1.0) == doctest::Approx(kStiffness_N_per_mm).epsilon(0.001));
-    CHECK(force_in(map, 20.0, 15.0, 3.0) == doctest::Approx(3.0 * kStiffness_N_per_mm).epsilon(0.001));
+    CHECK(map.depths_m[0] == close_to(1e-3));
+    CHECK(force_in(map, 20.0, 15.0, 1.0) == close_to(kStiffness_N_per_mm).epsilon(0.001));
+    CHECK(force_in(map, 20.0, 15.0, 3.0) == close_to(3.0 * kStiffness_N_per_mm).epsilon(0.001));
     options.at_depths_m.pop_back();
     CHECK(contains(message_of([&] { import_recording(files, options, report); }),
                    "2 depths for 3 files, expected one for each file"));
@@ -133,7 +134,7 @@ TEST_CASE("sliding: at constant depth the depth must be known, and is then kept 
     height.surface_z_m = -40e-3;
     const Map known = imported(raster(r), height);
     REQUIRE(known.n_depths() == 1);
-    CHECK(known.depths_m[0] == doctest::Approx(2e-3));
+    CHECK(known.depths_m[0] == close_to(2e-3));
 }
 
 TEST_CASE("sliding: depths that the recording has are taken as they are, and units that cannot be are told") {
@@ -151,9 +152,9 @@ TEST_CASE("sliding: depths that the recording has are taken as they are, and uni
     options.form = RecordingForm::sliding;
     const Map map = imported(text_of(1.0, 1.0), options);
     REQUIRE(map.n_depths() == 4);
-    CHECK(map.depths_m[3] == doctest::Approx(4e-3));
+    CHECK(map.depths_m[3] == close_to(4e-3));
     CHECK(map.tangential == TangentialKind::none);
-    CHECK(force_in(map, 10.0, 10.0, 3.0) == doctest::Approx(2.1).epsilon(0.001));
+    CHECK(force_in(map, 10.0, 10.0, 3.0) == close_to(2.1).epsilon(0.001));
     CHECK(contains(refusal(text_of(1e-3, 1.0), options), "--depth-unit m"));
     CHECK(contains(refusal(text_of(1.0, 1e3), options), "--force-unit mN"));
 }

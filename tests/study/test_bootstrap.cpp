@@ -4,9 +4,11 @@
 
 #include "study/bootstrap.h"
 #include "study/random.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -45,7 +47,7 @@ TEST_CASE("bootstrap: the width is that of a mean over people") {
     }
     const double error = std::sqrt((square - mean * mean) / 400.0);
     // 4,000 resamples: quantiles good to some 3 % of the error
-    CHECK(width(bootstrap_share(all, {4000, 1, 0.95})) == doctest::Approx(2.0 * 1.96 * error).epsilon(0.06));
+    CHECK(width(bootstrap_share(all, {4000, 1, 0.95})) == close_to(2.0 * 1.96 * error).epsilon(0.06));
 }
 
 TEST_CASE("bootstrap: clusters widen, pairs narrow") {
@@ -104,8 +106,8 @@ TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the norm
     const double arm = 1.96 * std::sqrt((square - mean * mean) / 20000.0);
     const Interval ci = bootstrap_share(all, {4000, 1, 0.95});
     // 4,000 resamples: quantiles good to some 3 % of the arm
-    CHECK(ci.low == doctest::Approx(mean - arm).epsilon(0.1 * arm / mean));
-    CHECK(ci.high == doctest::Approx(mean + arm).epsilon(0.1 * arm / mean));
+    CHECK(ci.low == close_to(mean - arm).epsilon(0.1 * arm / mean));
+    CHECK(ci.high == close_to(mean + arm).epsilon(0.1 * arm / mean));
     // the same people twice: every difference is 0, which says nothing about others
     CHECK(std::isnan(bootstrap_difference(all, all, {200, 1, 0.95}).low));
     // other people: the difference has both variances
@@ -114,5 +116,5 @@ TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the norm
     a.resize(40000);
     b.insert(b.end(), others.begin(), others.end());
     const Interval between = bootstrap_difference(a, b, {4000, 1, 0.95});
-    CHECK(0.5 * (between.high - between.low) == doctest::Approx(std::sqrt(2.0) * arm).epsilon(0.1));
+    CHECK(0.5 * (between.high - between.low) == close_to(std::sqrt(2.0) * arm).epsilon(0.1));
 }

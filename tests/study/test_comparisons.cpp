@@ -3,6 +3,7 @@
 #include <string>
 
 #include "study/comparisons.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -38,13 +39,13 @@ TEST_CASE("comparisons: groups under each condition, and how much they differ be
     // two conditions and their interaction for sensitivity, two conditions for PPV
     REQUIRE(results.size() == 5);
     CHECK(results[1].condition == "y");
-    CHECK(results[1].people.difference == doctest::Approx(-0.5));
+    CHECK(results[1].people.difference == close_to(-0.5));
     CHECK(results[1].people.p < 0.01);
-    CHECK(results[1].p_holm == doctest::Approx(2.0 * results[1].people.p));
+    CHECK(results[1].p_holm == close_to(2.0 * results[1].people.p));
     CHECK(results[2].condition == "x");
     CHECK(results[2].condition_b == "y");
-    CHECK(results[2].people.difference == doctest::Approx(0.5));
-    CHECK(results[2].p_holm == doctest::Approx(results[2].people.p));
+    CHECK(results[2].people.difference == close_to(0.5));
+    CHECK(results[2].p_holm == close_to(results[2].people.p));
     CHECK(results[3].quantity == Quantity::ppv);
 }
 
@@ -54,10 +55,10 @@ TEST_CASE("comparisons: the stated one is tested alone; without its logs it says
     seen.primary = PrimaryComparison{Quantity::sensitivity, false, {"y", "x"}, "", PrimaryTest::permutation};
     const auto result = primary_result(seen, {});
     REQUIRE(result);
-    CHECK(result->people.difference == doctest::Approx(0.25));
+    CHECK(result->people.difference == close_to(0.25));
     CHECK(result->p == result->people.p_permutation);
     seen.primary = PrimaryComparison{Quantity::sensitivity, true, {"I", "II"}, "y", PrimaryTest::t};
-    CHECK(primary_result(seen, {})->people.difference == doctest::Approx(-0.5));
+    CHECK(primary_result(seen, {})->people.difference == close_to(-0.5));
     seen.primary = PrimaryComparison{Quantity::sensitivity, false, {"y", "z"}, "", PrimaryTest::t};
     const auto missing = primary_result(seen, {});
     CHECK(std::isnan(missing->p));
@@ -86,9 +87,9 @@ TEST_CASE("comparisons: forced choices of two conditions over people, corrected 
 
 TEST_CASE("comparisons: Holm's correction leaves out what is not known") {
     const std::vector<double> corrected = holm_of_known({0.01, std::nan(""), 0.04});
-    CHECK(corrected[0] == doctest::Approx(0.02));
+    CHECK(corrected[0] == close_to(0.02));
     CHECK(std::isnan(corrected[1]));
-    CHECK(corrected[2] == doctest::Approx(0.04));
+    CHECK(corrected[2] == close_to(0.04));
 }
 
 TEST_CASE("comparisons: more pairs than are resampled keep their t test") {

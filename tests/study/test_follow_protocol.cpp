@@ -2,8 +2,10 @@
 
 #include "study/comparisons.h"
 #include "study/follow_protocol.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 TEST_CASE("follow protocol: signs of a - b follow its order of conditions, not the first log that was read") {
     Observations seen;
@@ -35,5 +37,5 @@ TEST_CASE("follow protocol: signs of a - b follow its order of conditions, not t
     const auto pairs = compare_conditions(seen, Quantity::sensitivity, {});
     REQUIRE(pairs.size() == 1);
     CHECK(pairs[0].a == "law");
-    CHECK(pairs[0].people.difference == doctest::Approx(0.75));
+    CHECK(pairs[0].people.difference == close_to(0.75));
 }

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "study/free_response.h"
+#include "tests/close_to.h"
 #include "tests/study/froc_sets.h"
 
 using namespace palpa::study;
@@ -68,15 +69,15 @@ double area_under_wafroc(const FreeResponse& data, std::size_t condition, std::s
 
 TEST_CASE("free response: the book's example, with its weights and with equal ones") {
     const FreeResponse data = book_example(false);
-    CHECK(figure(data, Merit::afroc) == doctest::Approx(0.8472222).epsilon(1e-7));
-    CHECK(figure(data, Merit::wafroc) == doctest::Approx(0.7425).epsilon(1e-12));
-    CHECK(figure(data, Merit::wafroc1) == doctest::Approx(0.7677778).epsilon(1e-7));
-    CHECK(figure(data, Merit::hr_auc) == doctest::Approx(0.9).epsilon(1e-12));
-    CHECK(figure(book_example(true), Merit::wafroc) == doctest::Approx(0.8125).epsilon(1e-12));
-    CHECK(figure(book_example(true), Merit::wafroc1) == doctest::Approx(0.8240741).epsilon(1e-7));
+    CHECK(figure(data, Merit::afroc) == close_to(0.8472222).epsilon(1e-7));
+    CHECK(figure(data, Merit::wafroc) == close_to(0.7425).epsilon(1e-12));
+    CHECK(figure(data, Merit::wafroc1) == close_to(0.7677778).epsilon(1e-7));
+    CHECK(figure(data, Merit::hr_auc) == close_to(0.9).epsilon(1e-12));
+    CHECK(figure(book_example(true), Merit::wafroc) == close_to(0.8125).epsilon(1e-12));
+    CHECK(figure(book_example(true), Merit::wafroc1) == close_to(0.8240741).epsilon(1e-7));
     const auto curve = froc_curve(data, 0, std::nullopt);
-    CHECK(curve.back().llf == doctest::Approx(8.0 / 9.0));
-    CHECK(curve.back().nlf == doctest::Approx(5.0 / 9.0));
+    CHECK(curve.back().llf == close_to(8.0 / 9.0));
+    CHECK(curve.back().nlf == close_to(5.0 / 9.0));
 }
 
 TEST_CASE("free response: figures of the stored sets") {
@@ -120,11 +121,11 @@ TEST_CASE("free response: nobody's marks give one half, false marks alone nothin
         reading->nl.clear();
         for (double& z : reading->ll) z = kX;
     }
-    for (const Merit merit : kMerits) CHECK(figure(data, merit) == doctest::Approx(0.5));
+    for (const Merit merit : kMerits) CHECK(figure(data, merit) == close_to(0.5));
     CHECK(llf_at(data, 0, std::nullopt, 0.5) == 0.0);
     for (auto& reading : data.readings) reading->nl.push_back(1.0);
     CHECK(figure(data, Merit::wafroc) == 0.0);
-    CHECK(figure(data, Merit::hr_auc) == doctest::Approx(0.5));
+    CHECK(figure(data, Merit::hr_auc) == close_to(0.5));
     data = book_example(true);
     data.cases.erase(data.cases.begin(), data.cases.begin() + 4);
     data.readings.erase(data.readings.begin(), data.readings.begin() + 4);
@@ -140,9 +141,9 @@ TEST_CASE("free response: the share found at some false marks a case lies on the
     // (0, 2/7) (0, 4/7) (1/8, 5/7) (3/8, 6/7) (5/8, 6/7)
     const FreeResponse data = froc_set(froc_json("froc_small.json"));
     REQUIRE(froc_curve(data, 0, 0).size() == 5);
-    CHECK(llf_at(data, 0, 0, 0.0) == doctest::Approx(4.0 / 7.0));
-    CHECK(llf_at(data, 0, 0, 1.0 / 16.0) == doctest::Approx(9.0 / 14.0));
-    CHECK(llf_at(data, 0, 0, 0.25) == doctest::Approx(11.0 / 14.0));
-    CHECK(llf_at(data, 0, 0, 0.5) == doctest::Approx(6.0 / 7.0));
-    CHECK(llf_at(data, 0, 0, 9.0) == doctest::Approx(6.0 / 7.0));
+    CHECK(llf_at(data, 0, 0, 0.0) == close_to(4.0 / 7.0));
+    CHECK(llf_at(data, 0, 0, 1.0 / 16.0) == close_to(9.0 / 14.0));
+    CHECK(llf_at(data, 0, 0, 0.25) == close_to(11.0 / 14.0));
+    CHECK(llf_at(data, 0, 0, 0.5) == close_to(6.0 / 7.0));
+    CHECK(llf_at(data, 0, 0, 9.0) == close_to(6.0 / 7.0));
 }

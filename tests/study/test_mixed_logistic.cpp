@@ -4,8 +4,10 @@
 
 #include "files/table.h"
 #include "study/mixed_logistic.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -85,7 +87,7 @@ TEST_CASE("mixed model: the fit is the highest point, and sums of repeats count 
     const MixedFit fit = fit_mixed_logistic(data);
     REQUIRE(fit.status.empty());
     const double top = mixed_log_likelihood(data, fit.beta, fit.s_participants, fit.s_nodules);
-    CHECK(top == doctest::Approx(fit.log_likelihood).epsilon(1e-10));
+    CHECK(top == close_to(fit.log_likelihood).epsilon(1e-10));
     for (const double d : {-0.05, 0.05}) {
         CHECK(mixed_log_likelihood(data, {fit.beta[0] + d, fit.beta[1]}, fit.s_participants, fit.s_nodules) < top);
         CHECK(mixed_log_likelihood(data, {fit.beta[0], fit.beta[1] + d}, fit.s_participants, fit.s_nodules) < top);
@@ -95,7 +97,7 @@ TEST_CASE("mixed model: the fit is the highest point, and sums of repeats count 
     MixedData twice = data, summed = data;
     twice.cells.insert(twice.cells.end(), data.cells.begin(), data.cells.end());
     for (MixedCell& cell : summed.cells) cell = {cell.condition, cell.participant, cell.nodule, 2 * cell.found, 2};
-    CHECK(fit_mixed_logistic(twice).beta[1] == doctest::Approx(fit_mixed_logistic(summed).beta[1]).epsilon(1e-6));
+    CHECK(fit_mixed_logistic(twice).beta[1] == close_to(fit_mixed_logistic(summed).beta[1]).epsilon(1e-6));
 }
 
 TEST_CASE("mixed model: people and nodules that do not differ leave the spreads at 0 and the plain log odds") {
@@ -109,11 +111,11 @@ TEST_CASE("mixed model: people and nodules that do not differ leave the spreads 
     REQUIRE(fit.status.empty());
     CHECK(fit.s_participants < 1e-3);
     CHECK(fit.s_nodules < 1e-3);
-    CHECK(fit.beta[0] == doctest::Approx(0.0).epsilon(1e-5));
-    CHECK(fit.beta[1] == doctest::Approx(std::log(2.0)).epsilon(1e-5));
+    CHECK(fit.beta[0] == close_to(0.0).epsilon(1e-5));
+    CHECK(fit.beta[1] == close_to(std::log(2.0)).epsilon(1e-5));
     CHECK(fit.covariance.empty());
-    CHECK(standard_error(fit, 1, 0) == doctest::Approx(std::sqrt(4.0 / 36 + 1.5 / 24 * 36.0 / 36 * 2.0)).epsilon(1e-4));
-    CHECK(averaged_share(fit, 1, 0.95).share == doctest::Approx(2.0 / 3.0).epsilon(1e-6));
+    CHECK(standard_error(fit, 1, 0) == close_to(std::sqrt(4.0 / 36 + 1.5 / 24 * 36.0 / 36 * 2.0)).epsilon(1e-4));
+    CHECK(averaged_share(fit, 1, 0.95).share == close_to(2.0 / 3.0).epsilon(1e-6));
 }
 
 TEST_CASE("mixed model: a condition under which everything was found gets the stated prior") {
@@ -159,16 +161,16 @@ TEST_CASE("mixed model: a model that does not converge says so, and that the nod
 }
 
 TEST_CASE("mixed model: the averaged share is the mean over the population") {
-    CHECK(averaged_share(0.7, 0.0) == doctest::Approx(1.0 / (1.0 + std::exp(-0.7))).epsilon(1e-12));
-    CHECK(averaged_share(0.0, 2.5) == doctest::Approx(0.5).epsilon(1e-12));
-    CHECK(averaged_share(-1.3, 1.7) == doctest::Approx(1.0 - averaged_share(1.3, 1.7)).epsilon(1e-12));
+    CHECK(averaged_share(0.7, 0.0) == close_to(1.0 / (1.0 + std::exp(-0.7))).epsilon(1e-12));
+    CHECK(averaged_share(0.0, 2.5) == close_to(0.5).epsilon(1e-12));
+    CHECK(averaged_share(-1.3, 1.7) == close_to(1.0 - averaged_share(1.3, 1.7)).epsilon(1e-12));
     constexpr std::uint32_t kSeed = 3;
     CAPTURE(kSeed);
     std::mt19937 random(kSeed);
     std::normal_distribution<double> normal;
     double sum = 0.0;
     for (int i = 0; i < 200000; ++i) sum += 1.0 / (1.0 + std::exp(-(1.0 + 1.5 * normal(random))));
-    CHECK(averaged_share(1.0, 1.5) == doctest::Approx(sum / 200000).epsilon(4e-3));
+    CHECK(averaged_share(1.0, 1.5) == close_to(sum / 200000).epsilon(4e-3));
     const AveragedShare share = averaged_share(fit_mixed_logistic(drawn_answers(5, 15, 7, 0.8)), 0, 0.95);
     REQUIRE(share.ci);
     CHECK(share.ci->low < share.share);

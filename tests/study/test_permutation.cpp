@@ -5,8 +5,10 @@
 
 #include "study/permutation.h"
 #include "study/random.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -55,17 +57,17 @@ TEST_CASE("permutation: signs and groups as counted one by one, with many ties")
         std::vector<double> a, b;
         for (std::uint32_t i = 0; i < 2 + random.below(5); ++i) a.push_back(random.below(7) / 3.0 - 1.0);
         for (std::uint32_t i = 0; i < 2 + random.below(5); ++i) b.push_back(random.below(7) / 3.0 - 1.0);
-        CHECK(sign_permutation(a, 1).p == doctest::Approx(by_counting_signs(a)).epsilon(1e-12));
-        CHECK(group_permutation(a, b, 1).p == doctest::Approx(by_counting_groups(a, b)).epsilon(1e-12));
+        CHECK(sign_permutation(a, 1).p == close_to(by_counting_signs(a)).epsilon(1e-12));
+        CHECK(group_permutation(a, b, 1).p == close_to(by_counting_groups(a, b)).epsilon(1e-12));
     }
 }
 
 TEST_CASE("permutation: known answers, and the least p that few people can reach") {
     const std::vector<double> same(5, 0.5), none(5, 0.0);
-    CHECK(sign_permutation(same, 1).p == doctest::Approx(2.0 / 32.0));
+    CHECK(sign_permutation(same, 1).p == close_to(2.0 / 32.0));
     CHECK(sign_permutation(none, 1).p == 1.0);
     const std::vector<double> low{0.0, 0.1, 0.2}, high{0.8, 0.9, 1.0};
-    CHECK(group_permutation(low, high, 1).p == doctest::Approx(2.0 / 20.0));
+    CHECK(group_permutation(low, high, 1).p == close_to(2.0 / 20.0));
     CHECK(group_permutation(same, same, 1).p == 1.0);
 }
 

@@ -4,6 +4,7 @@
 #include "files/text.h"
 #include "study/order.h"
 #include "study/protocol.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -62,7 +63,7 @@ TEST_CASE(
     CHECK(choice.comparisons_kPa.size() * 2 * static_cast<std::size_t>(choice.repeats) == 80);
     const double paper_kPa[] = {1.875, 2.0, 2.25, 2.75, 3.75};
     for (std::size_t i = 0; i < std::size(paper_kPa); ++i)
-        CHECK(choice.comparisons_kPa[i] / choice.reference_kPa == doctest::Approx(paper_kPa[i] / 1.75));
+        CHECK(choice.comparisons_kPa[i] / choice.reference_kPa == close_to(paper_kPa[i] / 1.75));
     CHECK(tactile.practice_trials > 0);
     // either surface is first equally often, and either condition begins equally often
     int first = 0, begins = 0;

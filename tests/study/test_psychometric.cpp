@@ -8,6 +8,7 @@
 #include "files/text.h"
 #include "study/psychometric.h"
 #include "study/simulated_observer.h"
+#include "tests/close_to.h"
 #include "tests/study/python.h"
 #include "tests/temporary_folder.h"
 
@@ -204,20 +205,20 @@ TEST_CASE("psychometric: a limit of the PSE at a level is there, where steps on 
 
 TEST_CASE("psychometric: the curve, its lapse and the just noticeable difference") {
     const PsychometricCurve curve{0.1, 0.3, 0.04};
-    CHECK(probability_stiffer(0.1, curve) == doctest::Approx(0.5));
-    CHECK(probability_stiffer(-9.0, curve) == doctest::Approx(0.04));
-    CHECK(probability_stiffer(9.0, curve) == doctest::Approx(0.96));
-    CHECK(probability_stiffer(0.1 + jnd_of_sd(0.3), {0.1, 0.3, 0.0}) == doctest::Approx(0.75));
+    CHECK(probability_stiffer(0.1, curve) == close_to(0.5));
+    CHECK(probability_stiffer(-9.0, curve) == close_to(0.04));
+    CHECK(probability_stiffer(9.0, curve) == close_to(0.96));
+    CHECK(probability_stiffer(0.1 + jnd_of_sd(0.3), {0.1, 0.3, 0.0}) == close_to(0.75));
     // the paper's two conditions: 82 % right is a JND of 18.9 %, 56 % right one of 339 %
     const auto right = [](double sd) {
         double sum = 0.0;
         for (const double x : paper_levels()) sum += probability_stiffer(std::abs(x), {0.0, sd, 0.0}) / 10.0;
         return sum;
     };
-    CHECK(right(.2567221) == doctest::Approx(.82).epsilon(1e-6));
-    CHECK(right(2.1929494) == doctest::Approx(.56).epsilon(1e-6));
-    CHECK(jnd_percent_of_sd(.2567221) == doctest::Approx(18.9).epsilon(2e-3));
-    CHECK(jnd_percent_of_sd(2.1929494) == doctest::Approx(339).epsilon(2e-3));
+    CHECK(right(.2567221) == close_to(.82).epsilon(1e-6));
+    CHECK(right(2.1929494) == close_to(.56).epsilon(1e-6));
+    CHECK(jnd_percent_of_sd(.2567221) == close_to(18.9).epsilon(2e-3));
+    CHECK(jnd_percent_of_sd(2.1929494) == close_to(339).epsilon(2e-3));
 }
 
 TEST_CASE("psychometric: turning the axis around turns the PSE, units of x scale both") {
@@ -225,11 +226,11 @@ TEST_CASE("psychometric: turning the axis around turns the PSE, units of x scale
     const PsychometricFit fit = fit_psychometric(levels, {});
     for (LevelAnswers& level : levels) level = {-2.0 * level.x, level.n - level.stiffer, level.n};
     const PsychometricFit turned = fit_psychometric(merged_levels(levels), {});
-    CHECK(*turned.pse == doctest::Approx(-2.0 * *fit.pse).epsilon(1e-6));
-    CHECK(*turned.sd == doctest::Approx(2.0 * *fit.sd).epsilon(1e-6));
-    CHECK(*turned.sd_ci.low == doctest::Approx(2.0 * *fit.sd_ci.low).epsilon(1e-5));
-    CHECK(*turned.pse_ci.high == doctest::Approx(-2.0 * *fit.pse_ci.low).epsilon(1e-4));
-    CHECK(turned.deviance == doctest::Approx(fit.deviance).epsilon(1e-6));
+    CHECK(*turned.pse == close_to(-2.0 * *fit.pse).epsilon(1e-6));
+    CHECK(*turned.sd == close_to(2.0 * *fit.sd).epsilon(1e-6));
+    CHECK(*turned.sd_ci.low == close_to(2.0 * *fit.sd_ci.low).epsilon(1e-5));
+    CHECK(*turned.pse_ci.high == close_to(-2.0 * *fit.pse_ci.low).epsilon(1e-4));
+    CHECK(turned.deviance == close_to(fit.deviance).epsilon(1e-6));
 }
 
 TEST_CASE("psychometric: levels are sorted, equal ones added up, empty ones left out") {

@@ -3,8 +3,10 @@
 
 #include "study/psychometric_people.h"
 #include "study/simulated_observer.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -66,7 +68,7 @@ TEST_CASE("psychometric people: the ratio of JNDs, of the same people and of two
     CHECK(*same.low > 1.5);
     CHECK(*same.high < 6.0);
     const OpenInterval turned = bootstrap_jnd_ratio({b, of_b}, {a, of_a}, 0.05, kFew);
-    CHECK(*turned.low == doctest::Approx(1.0 / *same.high).epsilon(0.02));
+    CHECK(*turned.low == close_to(1.0 / *same.high).epsilon(0.02));
     // the first six did a, the others b
     auto half_a = a, half_b = b;
     for (std::size_t i = 0; i < 6; ++i) half_b[i].clear(), half_a[i + 6].clear();
@@ -83,8 +85,8 @@ TEST_CASE("psychometric people: the ratio of two independent JNDs") {
     a.sd = 0.4, a.sd_ci = {0.3, 0.6};
     b.sd = 0.2, b.sd_ci = {0.2, 0.2};  // known exactly
     const OpenInterval exact = independent_jnd_ratio(a, b);
-    CHECK(*exact.low == doctest::Approx(1.5));
-    CHECK(*exact.high == doctest::Approx(3.0));
+    CHECK(*exact.low == close_to(1.5));
+    CHECK(*exact.high == close_to(3.0));
     b.sd_ci = {0.15, std::nullopt};
     const OpenInterval open = independent_jnd_ratio(a, b);
     CHECK_FALSE(open.low);

@@ -4,8 +4,10 @@
 
 #include "study/psychometric_search.h"
 #include "study/simulated_observer.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 TEST_CASE("psychometric search: at a top the log likelihood is level along every free coordinate") {
     constexpr std::uint64_t kSeed = 6;
@@ -68,8 +70,8 @@ TEST_CASE("psychometric search: the likeliest step is where the limit of a steep
 
 TEST_CASE("psychometric search: constants and shares") {
     const std::vector<LevelAnswers> levels{{0.0, 2, 10}, {1.0, 6, 10}};
-    CHECK(constant_log_likelihood(levels, 0.0, 1.0) == doctest::Approx(8 * std::log(0.4) + 12 * std::log(0.6)));
-    CHECK(constant_log_likelihood(levels, 0.5, 1.0) == doctest::Approx(20 * std::log(0.5)));
+    CHECK(constant_log_likelihood(levels, 0.0, 1.0) == close_to(8 * std::log(0.4) + 12 * std::log(0.6)));
+    CHECK(constant_log_likelihood(levels, 0.5, 1.0) == close_to(20 * std::log(0.5)));
     CHECK(saturated_log_likelihood(levels) ==
-          doctest::Approx(2 * std::log(0.2) + 8 * std::log(0.8) + 6 * std::log(0.6) + 4 * std::log(0.4)));
+          close_to(2 * std::log(0.2) + 8 * std::log(0.8) + 6 * std::log(0.6) + 4 * std::log(0.4)));
 }

@@ -4,6 +4,7 @@
 
 #include "files/text.h"
 #include "study/report.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -42,8 +43,8 @@ TEST_CASE("report: the paper's counts give its verdicts, and Holm's correction k
     CHECK(touchpad["tp"] == 31);
     CHECK(touchpad["fn"] == 29);
     CHECK(touchpad["fp"] == 5);
-    CHECK(touchpad["se_ci"][0].get<double>() == doctest::Approx(0.393078).epsilon(2e-6));
-    CHECK(touchpad["ppv_ci"][1].get<double>() == doctest::Approx(0.939182).epsilon(2e-6));
+    CHECK(touchpad["se_ci"][0].get<double>() == close_to(0.393078).epsilon(2e-6));
+    CHECK(touchpad["ppv_ci"][1].get<double>() == close_to(0.939182).epsilon(2e-6));
     CHECK(touchpad["nodules"]["C"]["tp"] == 3);
     CHECK(json["pairs"].size() == 10);
     CHECK(json["ppv_pairs"].size() == 10);
@@ -57,7 +58,7 @@ TEST_CASE("report: the paper's counts give its verdicts, and Holm's correction k
         CHECK(pair["p"].is_null());
         CHECK(pair["status"] == "cannot be computed, because the counts do not name their participants");
         if (pair["a"] != "S-pen" || pair["b"] != "Bare finger") continue;
-        CHECK(paper["combined_interval"].get<double>() == doctest::Approx(0.119343).epsilon(5e-6));
+        CHECK(paper["combined_interval"].get<double>() == close_to(0.119343).epsilon(5e-6));
         CHECK(paper["significant"] == false);
         CHECK(pair["higher"] == "S-pen");
     }
@@ -81,18 +82,18 @@ TEST_CASE("report: people who did both conditions are compared in pairs, over pa
     CHECK(pair.paired->only_b == 10);
     CHECK(pair.paired->neither == 15);
     CHECK(pair.higher == "b");
-    CHECK(pair.people.difference == doctest::Approx(-0.25));
+    CHECK(pair.people.difference == close_to(-0.25));
     CHECK(pair.people.df == 19.0);
     // ten people differ by one half, ten do not
-    CHECK(pair.people.t == doctest::Approx(-0.25 / std::sqrt(20.0 * 0.0625 / 19.0 / 20.0)));
-    CHECK(pair.people.p_permutation == doctest::Approx(2.0 / 1024.0));
-    CHECK(pair.replication->delta == doctest::Approx(0.25));
-    CHECK(pair.mcnemar_p == doctest::Approx(2.0 / 1024.0));
+    CHECK(pair.people.t == close_to(-0.25 / std::sqrt(20.0 * 0.0625 / 19.0 / 20.0)));
+    CHECK(pair.people.p_permutation == close_to(2.0 / 1024.0));
+    CHECK(pair.replication->delta == close_to(0.25));
+    CHECK(pair.mcnemar_p == close_to(2.0 / 1024.0));
     CHECK(pair.replication->p > pair.mcnemar_p);  // independent samples see less
     REQUIRE(pair.bootstrap);
     CHECK(pair.bootstrap->high < 0.0);
     CHECK(pair.participants_in_both == 20);
-    CHECK(report.conditions[0].duration_s->median == doctest::Approx(39.5));
+    CHECK(report.conditions[0].duration_s->median == close_to(39.5));
     CHECK_FALSE(report.conditions[0].max_force_N);
     CHECK(contains(report_markdown(report), "| a | time_s | 20 | 39.500 |"));
 }
@@ -125,10 +126,9 @@ TEST_CASE("report: forced choices against chance, over people and over answers")
     CHECK(choice.correct.x.n == 480);
     REQUIRE(choice.over_people);
     CHECK(choice.over_people->df == 5.0);
-    CHECK(choice.over_people->difference == doctest::Approx(62.5 / 80.0 - 0.5));
-    CHECK(choice.p_holm == doctest::Approx(choice.over_people->p));
-    CHECK(report_json(report)["choices"][0]["t_over_participants"]["mean"].get<double>() ==
-          doctest::Approx(62.5 / 80.0));
+    CHECK(choice.over_people->difference == close_to(62.5 / 80.0 - 0.5));
+    CHECK(choice.p_holm == close_to(choice.over_people->p));
+    CHECK(report_json(report)["choices"][0]["t_over_participants"]["mean"].get<double>() == close_to(62.5 / 80.0));
     CHECK(choice.over_answers->df == 479.0);
     CHECK(choice.binomial_p < 1e-30);
     CHECK(contains(report_markdown(report), "| with | all | 375 | 480 |"));
@@ -245,7 +245,7 @@ TEST_CASE("report: conditions on different displays stand in one table, also tho
     CHECK(table.rows[2][4] == "n/a");
     const Json json = report_json(report);
     REQUIRE(json["displays"].size() == 3);
-    CHECK(json["displays"][0]["sensitivity"].get<double>() == doctest::Approx(0.375));
+    CHECK(json["displays"][0]["sensitivity"].get<double>() == close_to(0.375));
     CHECK(json["displays"][0]["sensitivity_ci"][0].get<double>() < 0.375);
     CHECK(json["displays"][2]["sensitivity"].is_null());
     for (ConditionDisplay& one : seen.displays) one.display = "pen";

@@ -5,9 +5,11 @@
 #include <random>
 
 #include "study/score.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -47,8 +49,8 @@ TEST_CASE("score: hits, a second mark on one nodule, and false marks") {
     CHECK(score.true_positives == 2);
     CHECK(score.false_positives == 1);
     CHECK(score.false_negatives == 1);
-    CHECK(score.sensitivity == doctest::Approx(2.0 / 3.0));
-    CHECK(score.ppv == doctest::Approx(2.0 / 3.0));
+    CHECK(score.sensitivity == close_to(2.0 / 3.0));
+    CHECK(score.ppv == close_to(2.0 / 3.0));
 }
 
 TEST_CASE("score: one mark between two nodules leaves the other to the second mark") {
@@ -73,9 +75,9 @@ TEST_CASE("score: nothing to find, or nothing marked") {
 
 TEST_CASE("score: an elongated target is found along its whole length") {
     const Target rod{"A", 0.05, 0.05, 0.004, 0.060, std::numbers::pi / 2.0};
-    CHECK(distance_m(rod, {0.05, 0.078}) == doctest::Approx(0.0));
-    CHECK(distance_m(rod, {0.053, 0.078}) == doctest::Approx(0.003));
-    CHECK(distance_m(rod, {0.05, 0.088}) == doctest::Approx(0.010));
+    CHECK(distance_m(rod, {0.05, 0.078}) == close_to(0.0));
+    CHECK(distance_m(rod, {0.053, 0.078}) == close_to(0.003));
+    CHECK(distance_m(rod, {0.05, 0.088}) == close_to(0.010));
 }
 
 TEST_CASE("score: as many hits as any assignment has, at the least sum of distances") {
@@ -98,6 +100,6 @@ TEST_CASE("score: as many hits as any assignment has, at the least sum of distan
         double sum_m = 0.0;
         for (const MarkScore& mark : score.marks) sum_m += mark.kind == MarkKind::hit ? mark.distance_m : 0.0;
         CHECK(score.true_positives == best.hits);
-        CHECK(sum_m == doctest::Approx(best.sum_m).epsilon(1e-9));
+        CHECK(sum_m == close_to(best.sum_m).epsilon(1e-9));
     }
 }

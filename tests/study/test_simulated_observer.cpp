@@ -2,13 +2,15 @@
 #include <doctest/doctest.h>
 
 #include "study/simulated_observer.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 TEST_CASE("simulated observer: levels in both orders, answers spread evenly") {
     const std::vector<double> levels = paper_levels();
     REQUIRE(levels.size() == 10);
-    CHECK(levels[0] == doctest::Approx(-std::log(3.75 / 1.75)));
+    CHECK(levels[0] == close_to(-std::log(3.75 / 1.75)));
     CHECK(levels[9] == -levels[0]);
     Random random(12);
     std::int64_t n = 0;

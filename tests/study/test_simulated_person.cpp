@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 
 #include "study/simulated_person.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -47,7 +49,7 @@ TEST_CASE("simulated person: finds what is plain to see, where it is, and marks 
             CAPTURE(static_cast<int>(path));
             REQUIRE(out.marks.size() == 1);
             CHECK(std::hypot(out.marks[0].x_m - place.x_m, out.marks[0].y_m - place.y_m) < 5e-3);
-            CHECK(out.end_s == doctest::Approx(60.0).epsilon(0.01));
+            CHECK(out.end_s == close_to(60.0).epsilon(0.01));
         }
     }
 }
@@ -79,7 +81,7 @@ TEST_CASE("simulated person: strips and spirals cover the surface; the force is 
             cells[cell(p.y_m) * 16 + cell(p.x_m)] = true;
         }
         CHECK(std::count(cells.begin(), cells.end(), true) > 150);
-        CHECK(out.mean_N == doctest::Approx(traits.force_N).epsilon(0.08));
+        CHECK(out.mean_N == close_to(traits.force_N).epsilon(0.08));
     }
 }
 
@@ -127,7 +129,7 @@ TEST_CASE("simulated person: answers about softness follow the difference") {
         for (int i = 0; i < 2000; ++i) count += answers_right(1.75, comparison_kPa, 0.2, random) ? 1 : 0;
         return count / 2000.0;
     };
-    CHECK(right(1.76) == doctest::Approx(0.5).epsilon(0.1));
+    CHECK(right(1.76) == close_to(0.5).epsilon(0.1));
     CHECK(right(3.75) > 0.98);
     CHECK(right(2.25) > right(1.875));
 }

@@ -6,9 +6,11 @@
 #include "study/psychometric.h"
 #include "study/simulated_observer.h"
 #include "study/simulated_touch.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -43,8 +45,8 @@ double expected_share(bool pins) {
 }  // namespace
 
 TEST_CASE("simulated touch: the default noise gives the paper's 56 and 82 % by construction") {
-    CHECK(expected_share(false) == doctest::Approx(0.56).epsilon(1e-5));
-    CHECK(expected_share(true) == doctest::Approx(0.82).epsilon(1e-5));
+    CHECK(expected_share(false) == close_to(0.56).epsilon(1e-5));
+    CHECK(expected_share(true) == close_to(0.82).epsilon(1e-5));
 }
 
 TEST_CASE("simulated touch: answers drawn from what both senses are told have those shares") {
@@ -68,8 +70,8 @@ TEST_CASE("simulated touch: answers drawn from what both senses are told have th
 TEST_CASE("simulated touch: hand and fingertip read the same stiffness from force, depth and shape") {
     for (const double N_per_m : {100.0, 304.0, 1000.0}) {
         const FeltStiffness felt = feel_by_hand(press_on(N_per_m, 1.0));
-        CHECK(felt.by(Sense::hand) == doctest::Approx(std::log(N_per_m)).epsilon(1e-9));
-        CHECK(felt.by(Sense::fingertip) == doctest::Approx(std::log(N_per_m)).epsilon(1e-9));
+        CHECK(felt.by(Sense::hand) == close_to(std::log(N_per_m)).epsilon(1e-9));
+        CHECK(felt.by(Sense::fingertip) == close_to(std::log(N_per_m)).epsilon(1e-9));
         CHECK_FALSE(std::isfinite(felt.by(Sense::eye)));
         CHECK(feel_by_eye(press_on(N_per_m, 1.0)).by(Sense::eye) == felt.by(Sense::hand));
     }
@@ -77,7 +79,7 @@ TEST_CASE("simulated touch: hand and fingertip read the same stiffness from forc
 
 TEST_CASE("simulated touch: pins at the end of their stroke tell nothing more, so the shape counts while it grows") {
     const double soft = feel_by_hand(press_on(304.0, 2e-3)).by(Sense::fingertip);  // at 0.85 N the stroke is used up
-    CHECK(soft == doctest::Approx(std::log(304.0)).epsilon(1e-6));
+    CHECK(soft == close_to(std::log(304.0)).epsilon(1e-6));
 }
 
 TEST_CASE("simulated touch: what is displayed wrongly is felt wrongly") {
@@ -87,8 +89,8 @@ TEST_CASE("simulated touch: what is displayed wrongly is felt wrongly") {
         moment.shape_m *= 0.9;  // and pins that stay behind
     }
     const FeltStiffness felt = feel_by_hand(press);
-    CHECK(felt.by(Sense::hand) == doctest::Approx(std::log(1.1 * 304.0)).epsilon(1e-9));
-    CHECK(felt.by(Sense::fingertip) == doctest::Approx(std::log(1.1 / 0.9 * 304.0)).epsilon(1e-6));
+    CHECK(felt.by(Sense::hand) == close_to(std::log(1.1 * 304.0)).epsilon(1e-9));
+    CHECK(felt.by(Sense::fingertip) == close_to(std::log(1.1 / 0.9 * 304.0)).epsilon(1e-6));
 }
 
 TEST_CASE("simulated touch: without pins the fingertip is told nothing, and without a press nobody is") {
@@ -117,15 +119,15 @@ TEST_CASE("simulated touch: moments that are no numbers are left out") {
 
 TEST_CASE("simulated touch: a soft surface tells hand and fingertip the same, and the joined estimate is that") {
     const FeltStiffness felt = feel_soft_surface(press_on(300.0, 0.0));
-    CHECK(felt.by(Sense::hand) == doctest::Approx(std::log(300.0)));
+    CHECK(felt.by(Sense::hand) == close_to(std::log(300.0)));
     CHECK(felt.by(Sense::fingertip) == felt.by(Sense::hand));
     CHECK_FALSE(std::isfinite(felt.by(Sense::eye)));
-    CHECK(joined_ln(felt, {}) == doctest::Approx(std::log(300.0)));
+    CHECK(joined_ln(felt, {}) == close_to(std::log(300.0)));
     FeltStiffness two;
     two.by(Sense::hand) = 1.0;
     two.by(Sense::fingertip) = 2.0;
     TouchNoise noise;
     noise.sd = {1.0, 0.5, 1.0};
-    CHECK(joined_ln(two, noise) == doctest::Approx((1.0 + 4.0 * 2.0) / 5.0));
+    CHECK(joined_ln(two, noise) == close_to((1.0 + 4.0 * 2.0) / 5.0));
     CHECK_FALSE(std::isfinite(joined_ln({}, noise)));
 }

@@ -5,8 +5,10 @@
 
 #include "study/random.h"
 #include "study/staircase.h"
+#include "tests/close_to.h"
 
 using namespace palpa::study;
+using namespace palpa::test;
 
 namespace {
 
@@ -72,7 +74,7 @@ TEST_CASE("staircase: weighted up-down makes k of k + 1 answers right (Kaernbach
         CAPTURE(k);
         if (k == 1) continue;  // half right is chance: such a staircase ends at the smallest difference
         // binomial standard error 0.006
-        CHECK(right / 5000.0 == doctest::Approx(k / (k + 1.0)).epsilon(0.03));
+        CHECK(right / 5000.0 == close_to(k / (k + 1.0)).epsilon(0.03));
     }
 }
 
@@ -127,9 +129,9 @@ TEST_CASE("staircase: the posterior does not depend on the order of the answers,
     double sum = 0.0;
     for (std::size_t i = 0; i < one.size(); ++i) {
         sum += one[i].weight;
-        CHECK(one[i].weight == doctest::Approx(other[i].weight).epsilon(1e-9));
+        CHECK(one[i].weight == close_to(other[i].weight).epsilon(1e-9));
     }
-    CHECK(sum == doctest::Approx(1.0).epsilon(1e-12));
+    CHECK(sum == close_to(1.0).epsilon(1e-12));
 }
 
 TEST_CASE("staircase: 95 % credible intervals hold the truth of 95 % of observers drawn from the prior") {
@@ -179,7 +181,7 @@ TEST_CASE("staircase: too few reversals, or levels that end too early, say so") 
     CHECK(estimate_of(task, answers).status == "open");
     CHECK_FALSE(estimate_of(task, answers).threshold);
     CHECK(estimate_of(task, {}).trials == 0);
-    CHECK(percent_of(std::log(1.25)) == doctest::Approx(25.0));
+    CHECK(percent_of(std::log(1.25)) == close_to(25.0));
 }
 
 TEST_CASE("staircase: answers at levels that were not asked for are counted, by both methods") {

@@ -10,6 +10,7 @@
 #include "files/table.h"
 #include "study/random.h"
 #include "study/statistics.h"
+#include "tests/close_to.h"
 #include "tests/study/python.h"
 
 using namespace palpa;
@@ -40,7 +41,7 @@ Proportion random_counts(Random& random, int i) {
 }  // namespace
 
 TEST_CASE("statistics: the standard score of a confidence level") {
-    CHECK(kZ == doctest::Approx(1.959963984540054).epsilon(1e-15));
+    CHECK(kZ == close_to(1.959963984540054).epsilon(1e-15));
 }
 
 TEST_CASE("statistics: Wilson's limits solve their equation, mirror, and stay inside 0 to 1") {
@@ -93,41 +94,41 @@ TEST_CASE("statistics: paired differences as published") {
     // Newcombe 1998 (paired), table II: 36 12 2 0 gives 0.0569 to 0.3404. Fagerland, Lydersen & Laake, Stat. Med. 33
     // (2014) 2850: airway hyper-responsiveness before and after, 1 1 7 12, gives -0.507 to -0.026.
     const Interval first = newcombe_paired({36, 12, 2, 0}, kZ);
-    CHECK(first.low == doctest::Approx(0.0569).epsilon(1e-3));
-    CHECK(first.high == doctest::Approx(0.3404).epsilon(1e-3));
+    CHECK(first.low == close_to(0.0569).epsilon(1e-3));
+    CHECK(first.high == close_to(0.3404).epsilon(1e-3));
     const Interval second = newcombe_paired({1, 1, 7, 12}, kZ);
     CHECK(near(second.low, -0.507, 5e-4));
     CHECK(near(second.high, -0.026, 5e-4));
-    CHECK(mcnemar_p({1, 1, 7, 12}) == doctest::Approx(0.0703125).epsilon(1e-12));  // 2 (1 + 8)/2^8
+    CHECK(mcnemar_p({1, 1, 7, 12}) == close_to(0.0703125).epsilon(1e-12));  // 2 (1 + 8)/2^8
     CHECK(mcnemar_p({5, 0, 0, 5}) == 1.0);
 }
 
 TEST_CASE("statistics: pairs without correlation are as wide as independent samples; correlation narrows") {
     const Interval paired = newcombe_paired({12, 12, 8, 8}, kZ);  // 12 * 8 = 12 * 8
     const Interval independent = newcombe({24, 40}, {20, 40}, kZ);
-    CHECK(paired.low == doctest::Approx(independent.low).epsilon(1e-12));
-    CHECK(paired.high == doctest::Approx(independent.high).epsilon(1e-12));
+    CHECK(paired.low == close_to(independent.low).epsilon(1e-12));
+    CHECK(paired.high == close_to(independent.high).epsilon(1e-12));
     const Interval alike = newcombe_paired({20, 4, 0, 16}, kZ);
     CHECK(alike.high - alike.low < independent.high - independent.low);
     const Interval turned = newcombe_paired({20, 0, 4, 16}, kZ);
-    CHECK(turned.low == doctest::Approx(-alike.high).epsilon(1e-12));
+    CHECK(turned.low == close_to(-alike.high).epsilon(1e-12));
 }
 
 TEST_CASE("statistics: exact binomial test against sums done by hand") {
-    CHECK(exact_binomial_p({10, 10}, 0.5) == doctest::Approx(2.0 / 1024.0).epsilon(1e-12));
-    CHECK(exact_binomial_p({5, 10}, 0.5) == doctest::Approx(1.0).epsilon(1e-12));
-    CHECK(exact_binomial_p({8, 10}, 0.5) == doctest::Approx(2.0 * (45 + 10 + 1) / 1024.0).epsilon(1e-12));
-    CHECK(exact_binomial_p({2, 3}, 0.25) == doctest::Approx(0.140625 + 0.015625).epsilon(1e-12));
-    CHECK(exact_binomial_p({0, 3}, 0.25) == doctest::Approx(1.0).epsilon(1e-12));  // 0 and 1 are as likely: a tie
+    CHECK(exact_binomial_p({10, 10}, 0.5) == close_to(2.0 / 1024.0).epsilon(1e-12));
+    CHECK(exact_binomial_p({5, 10}, 0.5) == close_to(1.0).epsilon(1e-12));
+    CHECK(exact_binomial_p({8, 10}, 0.5) == close_to(2.0 * (45 + 10 + 1) / 1024.0).epsilon(1e-12));
+    CHECK(exact_binomial_p({2, 3}, 0.25) == close_to(0.140625 + 0.015625).epsilon(1e-12));
+    CHECK(exact_binomial_p({0, 3}, 0.25) == close_to(1.0).epsilon(1e-12));  // 0 and 1 are as likely: a tie
 }
 
 TEST_CASE("statistics: Student's t of a few values") {
     const double values[] = {0.5, 0.75, 1.0, 0.75};
     const TTest test = t_test(values, 0.5, 0.95);
-    CHECK(test.t == doctest::Approx(0.25 / std::sqrt(0.125 / 3.0 / 4.0)).epsilon(1e-12));
+    CHECK(test.t == close_to(0.25 / std::sqrt(0.125 / 3.0 / 4.0)).epsilon(1e-12));
     CHECK(test.df == 3.0);
     CHECK(test.ci.low < 0.75);
-    CHECK(test.ci.low == doctest::Approx(0.75 - 3.182446305284263 * std::sqrt(0.125 / 12.0)).epsilon(1e-9));
+    CHECK(test.ci.low == close_to(0.75 - 3.182446305284263 * std::sqrt(0.125 / 12.0)).epsilon(1e-9));
     const double alike[] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, ones[] = {1.0, 1.0};  // no variance, no test
     CHECK(std::isnan(t_test(alike, 0.5, 0.95).p));
     CHECK(std::isnan(t_test(ones, 0.5, 0.95).ci.low));
@@ -136,10 +137,10 @@ TEST_CASE("statistics: Student's t of a few values") {
 TEST_CASE("statistics: Holm's correction") {
     const double p[] = {0.01, 0.04, 0.03, 0.5};
     const std::vector<double> adjusted = holm(p);
-    CHECK(adjusted[0] == doctest::Approx(0.04));
-    CHECK(adjusted[2] == doctest::Approx(0.09));
-    CHECK(adjusted[1] == doctest::Approx(0.09));  // never below an earlier one
-    CHECK(adjusted[3] == doctest::Approx(0.5));
+    CHECK(adjusted[0] == close_to(0.04));
+    CHECK(adjusted[2] == close_to(0.09));
+    CHECK(adjusted[1] == close_to(0.09));  // never below an earlier one
+    CHECK(adjusted[3] == close_to(0.5));
     CHECK(holm({}).empty());
 }
 
@@ -328,7 +329,7 @@ TEST_CASE("statistics: the exact binomial test of many answers takes both tails 
         const double chance = one.chance;
         CAPTURE(k);
         CAPTURE(chance);
-        CHECK(exact_binomial_p({k, n}, chance) == doctest::Approx(summed(k, n, chance)).epsilon(1e-9));
+        CHECK(exact_binomial_p({k, n}, chance) == close_to(summed(k, n, chance)).epsilon(1e-9));
     }
     CHECK(exact_binomial_p({150'000'000'000, 300'000'000'000}, 0.5) == 1.0);
 }
@@ -337,7 +338,7 @@ TEST_CASE("statistics: the t test of answers is that of as many ones and zeros")
     std::vector<double> values(80, 0.0);
     std::fill(values.begin(), values.begin() + 53, 1.0);
     const TTest one = t_test(values, 0.5, 0.95), other = t_test_of_answers({53, 80}, 0.5, 0.95);
-    CHECK(other.t == doctest::Approx(one.t).epsilon(1e-12));
-    CHECK(other.p == doctest::Approx(one.p).epsilon(1e-10));
-    CHECK(other.ci.low == doctest::Approx(one.ci.low).epsilon(1e-12));
+    CHECK(other.t == close_to(one.t).epsilon(1e-12));
+    CHECK(other.p == close_to(one.p).epsilon(1e-10));
+    CHECK(other.ci.low == close_to(one.ci.low).epsilon(1e-12));
 }

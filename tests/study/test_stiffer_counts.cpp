@@ -5,6 +5,7 @@
 #include "study/read_logs.h"
 #include "study/stiffer_counts.h"
 #include "study/trial_log.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -42,8 +43,8 @@ TEST_CASE("stiffer counts: a table gives levels of ln(comparison/reference)") {
         "condition\tparticipant\treference_kPa\tcomparison_kPa\tstiffer\tn\n"
         "pen\tp1\t1.75\t3.5\t9\t10\npen\tp2\t1.75\t0.875\t1\t10\nhand\tn/a\t2\t3\t7\t7\nhand\tn/a\t3\t2\t0\t5\n");
     REQUIRE(seen.stiffer.size() == 4);
-    CHECK(seen.stiffer[0].x == doctest::Approx(std::log(2.0)));
-    CHECK(seen.stiffer[1].x == doctest::Approx(-std::log(2.0)));
+    CHECK(seen.stiffer[0].x == close_to(std::log(2.0)));
+    CHECK(seen.stiffer[1].x == close_to(-std::log(2.0)));
     CHECK(seen.stiffer[1].participant == 1);
     CHECK(seen.stiffer[2].participant == -1);
     CHECK(seen.stiffer[2].axis == StiffnessAxis::comparison_reference);
@@ -113,7 +114,7 @@ TEST_CASE("stiffer counts: a log tells the order, and where the reference stayed
         row.correct = row.answer == "reference" ? 1 : 0;
         const Observations seen = logged(row);
         REQUIRE(seen.stiffer.size() == 1);
-        CHECK(seen.stiffer[0].x == doctest::Approx(one.x));
+        CHECK(seen.stiffer[0].x == close_to(one.x));
         CHECK(seen.stiffer[0].stiffer == one.stiffer);
         const bool stays = std::string(one.reference_on) != "n/a";
         CHECK(seen.stiffer[0].axis == (stays ? StiffnessAxis::comparison_reference : StiffnessAxis::second_first));

@@ -7,6 +7,7 @@
 #include "study/report.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -201,7 +202,7 @@ TEST_CASE("read logs: nodules, pairs, times; interrupted trials and cut lines ar
     REQUIRE(report.pairs.size() == 1);
     CHECK(report.pairs[0].paired->n() == 6);
     CHECK(report.pairs[0].paired->only_b == 3);
-    CHECK(report.conditions[1].path_m->median == doctest::Approx(0.9));
+    CHECK(report.conditions[1].path_m->median == close_to(0.9));
     CHECK(report.trials == 6);
 }
 

@@ -9,12 +9,14 @@
 #include "files/text.h"
 #include "tactile/arm_compensation.h"
 #include "tactile/arm_strokes.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::tactile;
+using namespace palpa::test;
 
 namespace {
 
@@ -70,13 +72,13 @@ TEST_CASE("compensation: parameters of a known arm are found from ideal strokes"
     const ArmCompensation arm = known_arm();
     const CompensationFit fit = fit_compensation(ideal_strokes(arm, 0.02));
     const ArmCompensation& found = fit.compensation;
-    CHECK(found.coulomb_N == doctest::Approx(arm.coulomb_N).epsilon(0.01));
-    CHECK(found.static_N == doctest::Approx(arm.static_N).epsilon(0.02));
-    CHECK(found.stribeck_m_per_s == doctest::Approx(arm.stribeck_m_per_s).epsilon(0.05));
-    CHECK(found.viscous_N_s_per_m == doctest::Approx(arm.viscous_N_s_per_m).epsilon(0.1));
-    CHECK(found.weight_N == doctest::Approx(arm.weight_N).epsilon(0.001));
-    CHECK(found.ripple.amplitude_N == doctest::Approx(arm.ripple.amplitude_N).epsilon(0.01));
-    CHECK(found.ripple.wavelength_m == doctest::Approx(arm.ripple.wavelength_m).epsilon(0.002));
+    CHECK(found.coulomb_N == close_to(arm.coulomb_N).epsilon(0.01));
+    CHECK(found.static_N == close_to(arm.static_N).epsilon(0.02));
+    CHECK(found.stribeck_m_per_s == close_to(arm.stribeck_m_per_s).epsilon(0.05));
+    CHECK(found.viscous_N_s_per_m == close_to(arm.viscous_N_s_per_m).epsilon(0.1));
+    CHECK(found.weight_N == close_to(arm.weight_N).epsilon(0.001));
+    CHECK(found.ripple.amplitude_N == close_to(arm.ripple.amplitude_N).epsilon(0.01));
+    CHECK(found.ripple.wavelength_m == close_to(arm.ripple.wavelength_m).epsilon(0.002));
     CHECK(std::cos(found.ripple.phase_rad - arm.ripple.phase_rad) > 0.999);
     CHECK(fit.residual_N < 0.03);
 }
@@ -86,11 +88,11 @@ TEST_CASE("compensation: what is added is what the arm takes, but a twentieth of
     for (const double v : {-0.05, -2e-3, 2e-3, 0.05}) {
         const double taken_N = hand_force_N(arm, 0.02, v);
         arm.share = 1.0;
-        CHECK(compensation_at(arm, 0.02, v) == doctest::Approx(-taken_N).epsilon(1e-4));
+        CHECK(compensation_at(arm, 0.02, v) == close_to(-taken_N).epsilon(1e-4));
     }
     arm.share = 0.95;
     arm.ripple.amplitude_N = arm.weight_N = 0.0;
-    CHECK(compensation_at(arm, 0.02, 0.05) == doctest::Approx(-0.95 * (1.8 + 0.1)).epsilon(1e-6));
+    CHECK(compensation_at(arm, 0.02, 0.05) == close_to(-0.95 * (1.8 + 0.1)).epsilon(1e-6));
     FrictionDirection direction;
     CHECK(compensation_N(arm, 0.02, 0.0, direction) == 0.0);
 }
@@ -144,7 +146,7 @@ TEST_CASE("compensation: a written file reads back, and a wrong one is refused")
     write_compensation(fit, "an arm", path);
     const ArmCompensation back = read_compensation(path);
     CHECK(back.static_N == 2.5);
-    CHECK(back.ripple.wavelength_m == doctest::Approx(11.3e-3));
+    CHECK(back.ripple.wavelength_m == close_to(11.3e-3));
     CHECK(back.share == 0.95);
     std::string text = files::read_text(path);
     text.replace(text.find("\"static_N\": 2.5"), 15, "\"static_N\": 1.0");

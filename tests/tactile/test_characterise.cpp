@@ -4,10 +4,12 @@
 #include <doctest/doctest.h>
 
 #include "tactile/characterise.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::tactile;
 using namespace palpa::devices::simulators;
+using namespace palpa::test;
 
 namespace {
 
@@ -85,10 +87,10 @@ TEST_CASE("characterise: line, offset and hysteresis of readings that are known"
         rows.push_back({1e-3 * i, depth_m, v, 400.0 * depth_m + 0.3 + (down ? 0.25 : -0.25), 0.0});
     }
     const StiffnessRun run = stiffness_of(500.0, rows);
-    CHECK(run.rendered_N_per_m == doctest::Approx(400.0));
-    CHECK(run.error_share == doctest::Approx(-0.2));
-    CHECK(run.hysteresis_N == doctest::Approx(0.25));
-    CHECK(run.force_at_0_N == doctest::Approx(0.3));
+    CHECK(run.rendered_N_per_m == close_to(400.0));
+    CHECK(run.error_share == close_to(-0.2));
+    CHECK(run.hysteresis_N == close_to(0.25));
+    CHECK(run.force_at_0_N == close_to(0.3));
     CHECK_THROWS_WITH_AS(stiffness_of(500.0, {}), doctest::Contains("did the hand press"), std::runtime_error);
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "tactile/loop.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/tactile/tactile_scene.h"
 
@@ -45,7 +46,7 @@ TEST_CASE("tactile loop: above the surface the force is zero and the pins rest")
     CHECK(out.arm.force_N == 0.0);
     CHECK_FALSE(out.pressed);
     CHECK(out.pins == 36);
-    for (std::size_t i = 0; i < 36; ++i) CHECK(out.pins_m[i] == doctest::Approx(mechanics::rest_height_m(*plan->pins)));
+    for (std::size_t i = 0; i < 36; ++i) CHECK(out.pins_m[i] == close_to(mechanics::rest_height_m(*plan->pins)));
 }
 
 TEST_CASE("tactile loop: depth in, force out, and the bowl of the surface on the pins") {
@@ -53,7 +54,7 @@ TEST_CASE("tactile loop: depth in, force out, and the bowl of the surface on the
     const auto plan = slab.tactile_plan();
     const std::vector<LoopCommand> steps = pressed(*plan, 0.002, 1000);
     const LoopCommand& last = steps.back();
-    CHECK(last.force_N == doctest::Approx(plan->stiffness_N_per_m * last.depth_m).epsilon(0.01));
+    CHECK(last.force_N == close_to(plan->stiffness_N_per_m * last.depth_m).epsilon(0.01));
     CHECK(last.arm.force_N == last.force_N);
     CHECK(last.arm.mode == static_cast<double>(devices::ArmMode::force));
     const double middle_m = last.wanted_m[14];  // row 2, column 2
@@ -74,7 +75,7 @@ TEST_CASE("tactile loop: above the force limit force and shape hold, and say so"
     for (auto step = first; step != steps.end(); ++step) {
         CHECK(step->held);
         CHECK(step->force_N <= 2.5);
-        CHECK(step->force_N == doctest::Approx(2.5).epsilon(1e-6));
+        CHECK(step->force_N == close_to(2.5).epsilon(1e-6));
         CHECK(step->wanted_m == first->wanted_m);
     }
     for (auto step = steps.begin(); step != first; ++step) CHECK(step->force_N <= 2.5);
@@ -100,14 +101,14 @@ TEST_CASE("tactile loop: lead commands what free commands 20 ms later, from what
     LoopState state = make_loop_state(*plan);
     for (int k = 0; k < 100; ++k) loop_command(*plan, touched(1e-3 * k, 0.0), state);
     const LoopCommand turned = loop_command(*plan, touched(0.1, 0.0), state);
-    CHECK(turned.pins_m[0] == doctest::Approx(mechanics::rest_height_m(*plan->pins)));
+    CHECK(turned.pins_m[0] == close_to(mechanics::rest_height_m(*plan->pins)));
 }
 
 TEST_CASE("tactile loop: locked pins stand at the top") {
     const TactileScene slab(with_schedule("locked"));
     const std::vector<LoopCommand> steps = pressed(*slab.tactile_plan(), 0.01, 300);
     for (const LoopCommand& step : steps) {
-        for (std::size_t i = 0; i < 36; ++i) CHECK(step.pins_m[i] == doctest::Approx(2e-3));
+        for (std::size_t i = 0; i < 36; ++i) CHECK(step.pins_m[i] == close_to(2e-3));
     }
     CHECK(steps.back().force_N > 0.5);
 }
@@ -178,6 +179,6 @@ TEST_CASE("tactile loop: stopped, the force is zero and the pins rest whatever t
         const LoopCommand out = loop_command(*plan, in, state);
         CHECK(out.force_N == 0.0);
         CHECK(out.arm.mode == static_cast<double>(devices::ArmMode::rest));
-        CHECK(out.pins_m[0] == doctest::Approx(mechanics::rest_height_m(*plan->pins)));
+        CHECK(out.pins_m[0] == close_to(mechanics::rest_height_m(*plan->pins)));
     }
 }

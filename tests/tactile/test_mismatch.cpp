@@ -3,8 +3,10 @@
 #include <vector>
 
 #include "tactile/mismatch.h"
+#include "tests/close_to.h"
 
 using namespace palpa::tactile;
+using namespace palpa::test;
 
 namespace {
 
@@ -27,14 +29,14 @@ MismatchMeter followed(double late_s, double offset_m = 0.0) {
 
 TEST_CASE("mismatch: heights, root mean square and greatest") {
     const MismatchMeter meter = followed(0.0, 2e-4);
-    CHECK(rms_m(meter) == doctest::Approx(2e-4).epsilon(1e-6));
-    CHECK(meter.max_m == doctest::Approx(2e-4).epsilon(1e-6));
+    CHECK(rms_m(meter) == close_to(2e-4).epsilon(1e-6));
+    CHECK(meter.max_m == close_to(2e-4).epsilon(1e-6));
 }
 
 TEST_CASE("mismatch: how long the pins are behind, or ahead") {
     for (const double late_s : {0.0, 7e-3, 23.5e-3, 100e-3, -12e-3}) {
         CAPTURE(late_s);
-        CHECK(lag_s(followed(late_s)) == doctest::Approx(late_s).epsilon(0.02).scale(5e-3));
+        CHECK(lag_s(followed(late_s)) == close_to(late_s).epsilon(0.02).scale(5e-3));
     }
 }
 

@@ -3,8 +3,10 @@
 #include <random>
 
 #include "tactile/motion.h"
+#include "tests/close_to.h"
 
 using namespace palpa::tactile;
+using namespace palpa::test;
 
 namespace {
 
@@ -23,22 +25,22 @@ Motion steady(double m_per_s, int samples, double from_s = 100.0) {
 TEST_CASE("motion: a steady motion is extrapolated exactly") {
     const Motion motion = steady(0.02, 40);
     const MotionSample soon = ahead(motion, 20e-3);
-    CHECK(soon.time_s == doctest::Approx(100.039 + 0.020));
-    CHECK(soon.value == doctest::Approx(1e-3 + 0.02 * 0.059).epsilon(1e-9));
-    CHECK(soon.x_m == doctest::Approx(0.05 + 0.04 * 0.059).epsilon(1e-9));
-    CHECK(soon.y_m == doctest::Approx(0.04 - 0.02 * 0.059).epsilon(1e-9));
+    CHECK(soon.time_s == close_to(100.039 + 0.020));
+    CHECK(soon.value == close_to(1e-3 + 0.02 * 0.059).epsilon(1e-9));
+    CHECK(soon.x_m == close_to(0.05 + 0.04 * 0.059).epsilon(1e-9));
+    CHECK(soon.y_m == close_to(0.04 - 0.02 * 0.059).epsilon(1e-9));
 }
 
 TEST_CASE("motion: a motion that accelerates is followed, over 16 ms of samples") {
     Motion motion;
     for (int k = 0; k < 30; ++k) remember({1e-3 * k, 0.0, 0.0, 0.1 * std::pow(1e-3 * k, 2.0)}, motion);
-    CHECK(ahead(motion, 20e-3).value == doctest::Approx(0.1 * std::pow(0.049, 2.0)).epsilon(1e-9));
+    CHECK(ahead(motion, 20e-3).value == close_to(0.1 * std::pow(0.049, 2.0)).epsilon(1e-9));
 }
 
 TEST_CASE("motion: few and slow samples, as a pen's, are extrapolated on straight lines") {
     Motion motion;
     for (int k = 0; k < 4; ++k) remember({8e-3 * k, 0.0, 0.0, 1e-3 + 0.02 * 8e-3 * k}, motion);
-    CHECK(ahead(motion, 20e-3).value == doctest::Approx(1e-3 + 0.02 * 0.044).epsilon(1e-9));
+    CHECK(ahead(motion, 20e-3).value == close_to(1e-3 + 0.02 * 0.044).epsilon(1e-9));
 }
 
 TEST_CASE("motion: nothing, one sample, equal times and pauses") {
@@ -51,7 +53,7 @@ TEST_CASE("motion: nothing, one sample, equal times and pauses") {
     CHECK(ahead(motion, 0.02).value == 4e-3);
     remember({0.5, 0.1, 0.2, 5e-3}, motion);  // a time that goes back: no jump into the past
     CHECK(motion.n == 1);
-    CHECK(ahead(motion, 0.02).time_s == doctest::Approx(1.02));
+    CHECK(ahead(motion, 0.02).time_s == close_to(1.02));
     remember({1.0 + 2 * kForgotten_s, 0.1, 0.2, 1e-3}, motion);
     CHECK(motion.n == 1);
     CHECK(ahead(motion, 0.02).value == 1e-3);

@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include "tactile/pin_estimate.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::tactile;
+using namespace palpa::test;
 
 namespace {
 
@@ -20,11 +22,11 @@ double after_m(double seconds, double commanded_m) {
 TEST_CASE("pin estimate: a pin starts at rest, arrives, and goes no faster than it can") {
     CHECK(after_m(0.0, 2e-3) == 0.0);
     CHECK(after_m(0.05, 2e-3) <= 0.05 * 0.03 + 1e-12);  // 30 mm/s
-    CHECK(after_m(0.5, 2e-3) == doctest::Approx(2e-3).epsilon(1e-6));
+    CHECK(after_m(0.5, 2e-3) == close_to(2e-3).epsilon(1e-6));
 }
 
 TEST_CASE("pin estimate: small moves follow a first-order lag of 12 ms") {
-    CHECK(after_m(0.012, 1e-4) == doctest::Approx(1e-4 * (1.0 - std::exp(-1.0))).epsilon(1e-6));
+    CHECK(after_m(0.012, 1e-4) == close_to(1e-4 * (1.0 - std::exp(-1.0))).epsilon(1e-6));
 }
 
 TEST_CASE("pin estimate: a board takes a new target once per frame") {

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "tactile/loop.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/tactile/tactile_scene.h"
 
@@ -79,7 +80,7 @@ TEST_CASE("tactile plan: the stages say at which force the stroke is used up") {
     CHECK(said);
     // ten times as stiff: at a tenth of the depth per newton the stroke lasts ten times as long
     const TactileScene stiff(kArmAndPins, 10.0);
-    CHECK(stiff.tactile_plan()->stroke_used_up_N == doctest::Approx(10.0 * plan->stroke_used_up_N).epsilon(1e-6));
+    CHECK(stiff.tactile_plan()->stroke_used_up_N == close_to(10.0 * plan->stroke_used_up_N).epsilon(1e-6));
 }
 
 TEST_CASE("tactile plan: a scene without the key is refused") {
@@ -95,7 +96,7 @@ TEST_CASE("tactile plan: a force curve answers depth with force, with the displa
     tactile::LoopState state = tactile::make_loop_state(plan);
     tactile::LoopInput in;
     in.touch = {0.0, 0.0, 0.0, 1.5e-3, 0.0, true};
-    CHECK(tactile::loop_command(plan, in, state).force_N == doctest::Approx(1.25));
+    CHECK(tactile::loop_command(plan, in, state).force_N == close_to(1.25));
     in.touch.depth_m = 5e-3;  // beyond the curve
     CHECK(tactile::loop_command(plan, in, state).held);
     CHECK(contains(plan.stages.front().fidelity, "a force curve"));

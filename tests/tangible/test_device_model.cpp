@@ -4,9 +4,11 @@
 #include "tangible/device_checks.h"
 #include "tangible/device_model.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::tangible;
+using namespace palpa::test;
 
 namespace {
 
@@ -64,14 +66,14 @@ TEST_CASE("device model: the finger held at a depth feels the force that leads t
     equilibrium(model, state, pulled(1.0, 0.0));
     const ForwardAnswer pressed = equilibrium(model, state, pulled(1.0, 0.3));
     const ForwardAnswer held = press_to_depth(model, state, {1.0, 1.0}, pressed.depth_m);
-    CHECK(held.force_N == doctest::Approx(0.3).epsilon(1e-8).scale(0.0));
+    CHECK(held.force_N == close_to(0.3).epsilon(1e-8));
     DeviceLoad by_length;
     by_length.by_position = {true, true};
     by_length.length = pressed.length;
     by_length.finger = 0.3;
     const ForwardAnswer led = equilibrium(model, state, by_length);
     REQUIRE(led.status == DeviceStatus::good);
-    CHECK(led.actuation[0] == doctest::Approx(1.0).epsilon(1e-6));
+    CHECK(led.actuation[0] == close_to(1.0).epsilon(1e-6));
 }
 
 TEST_CASE("device model: F > 2 T pulls the strip through, which is a status and no wild shape") {
@@ -104,11 +106,11 @@ TEST_CASE("device model: one linear tetrahedron through the wall is a warning") 
 
 TEST_CASE("device model: the strip weighs 0.08 N, and as little as that moves it when it is simulated") {
     const DeviceModel model = strip_model();
-    CHECK(weight_N(model) == doctest::Approx(0.0839).epsilon(0.01).scale(0.0));
+    CHECK(weight_N(model) == close_to(0.0839).epsilon(0.01));
     files::Json json = files::read_json(test::kAssets / "devices" / "strip.json");
     json["gravity_m_per_s2"] = {0.0, 0.0, -9.80665};
     const DeviceModel heavy = make_device_model(parse_soft_device(json, "heavy.json", test::kAssets / "devices"));
-    CHECK(heavy.weight_N.sum() == doctest::Approx(-weight_N(model)).epsilon(1e-9).scale(0.0));
+    CHECK(heavy.weight_N.sum() == close_to(-weight_N(model)).epsilon(1e-9));
     DeviceState light_state = rest_state(model);
     DeviceState heavy_state = rest_state(heavy);
     const double sunk_m = equilibrium(heavy, heavy_state, pulled(1.0, 0.0)).depth_m + heavy_state.rest_depth_m -

@@ -3,6 +3,7 @@
 #include "files/text.h"
 #include "tangible/fit.h"
 #include "tangible/tick_log.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/tangible/small_strip.h"
 #include "tests/temporary_folder.h"
@@ -38,7 +39,7 @@ std::string presses_refused(const std::string& text) {
 TEST_CASE("fit: a plant's modulus is found again from one press") {
     const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.2), 4));
     CHECK(result.settled);
-    CHECK(result.fit.modulus_factor == doctest::Approx(1.2).epsilon(0.01));
+    CHECK(result.fit.modulus_factor == close_to(1.2).epsilon(0.01));
     CHECK(result.fit.friction_share < 0.01);
     CHECK(result.fit.lag_s == 0.0);  // was not asked for
     CHECK(result.rms_after_N < 0.1 * result.rms_before_N);
@@ -48,8 +49,8 @@ TEST_CASE("fit: friction is told from the difference of pressing and releasing")
     PlantOptions plant = small_plant(0.9);
     plant.friction_share = 0.08;
     const FitResult result = fit_presses(small_strip()->device, recorded(plant, 4));
-    CHECK(result.fit.modulus_factor == doctest::Approx(0.9).epsilon(0.02));
-    CHECK(result.fit.friction_share == doctest::Approx(0.08).epsilon(0.02));
+    CHECK(result.fit.modulus_factor == close_to(0.9).epsilon(0.02));
+    CHECK(result.fit.friction_share == close_to(0.08).epsilon(0.02));
     CHECK(result.rms_after_N < 0.3 * result.rms_before_N);
 }
 
@@ -59,14 +60,14 @@ TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     const std::vector<RecordedTick> ticks = recorded(plant);
     const FitResult result = fit_presses(small_strip()->device, ticks, {true, 24, {}});
     CHECK(result.settled);
-    CHECK(result.fit.lag_s == doctest::Approx(0.05).epsilon(0.1));
-    CHECK(result.fit.modulus_factor == doctest::Approx(1.1).epsilon(0.02));
+    CHECK(result.fit.lag_s == close_to(0.05).epsilon(0.1));
+    CHECK(result.fit.modulus_factor == close_to(1.1).epsilon(0.02));
     CHECK(result.fit.friction_share < 0.02);
     SoftDevice known = small_strip()->device;  // the same presses, and a lag that the device's file holds
     known.fit.lag_s = 0.05;
     const FitResult kept = fit_presses(known, ticks, {false, 24, {}});
     CHECK(kept.fit.lag_s == 0.05);
-    CHECK(kept.fit.modulus_factor == doctest::Approx(1.1).epsilon(0.005));
+    CHECK(kept.fit.modulus_factor == close_to(1.1).epsilon(0.005));
 }
 
 TEST_CASE("fit: bad tables and presses that tell nothing") {

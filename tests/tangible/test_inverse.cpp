@@ -4,10 +4,12 @@
 #include "files/json.h"
 #include "tangible/inverse.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 
 using namespace palpa;
 using namespace palpa::tangible;
+using namespace palpa::test;
 
 namespace {
 
@@ -92,8 +94,7 @@ TEST_CASE("inverse: the stale factor follows W through its change of sign, from 
         answer = inverse_step(device.model, device.state, {5e-5 * tick, 5e-3 * tick, {}}, options);
     CHECK(answer.status == DeviceStatus::good);
     CHECK(std::abs(answer.residual_m) < 1e-6);
-    CHECK(press_to_depth(device.model, device.state, answer.actuation, 3e-3).force_N ==
-          doctest::Approx(0.3).epsilon(0.01));
+    CHECK(press_to_depth(device.model, device.state, answer.actuation, 3e-3).force_N == close_to(0.3).epsilon(0.01));
 }
 
 TEST_CASE("inverse: step, repeated at held input, reaches converged to 1e-8") {
@@ -162,7 +163,7 @@ TEST_CASE("inverse: out of reach ends at a limit, by name, and within the limits
     for (int tick = 0; tick < 100; ++tick)
         answer = inverse_step(other.model, other.state, {3e-3, 1.2 * std::min(1.0, tick / 50.0), {}}, {});
     CHECK(answer.limited_by == 0);
-    CHECK(answer.actuation[0] == doctest::Approx(5.5));
+    CHECK(answer.actuation[0] == close_to(5.5));
     const Actuation before = other.state.actuation;
     answer = inverse_step(other.model, other.state, {std::nan(""), 0.1, {}}, {});
     CHECK(answer.status == DeviceStatus::bad_input);

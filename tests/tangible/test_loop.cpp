@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <random>
 
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/tangible/small_strip.h"
 
@@ -43,7 +44,7 @@ TEST_CASE("tangible loop: a press on the exact plant renders the wanted force") 
     for (const double stiffness : {0.1, 0.2}) {
         const PressFigures figures = press_small(stiffness, small_plant());
         CHECK(figures.force_rms_percent < 0.5);
-        CHECK(figures.rendered_N_per_m == doctest::Approx(1e3 * stiffness).epsilon(0.01));
+        CHECK(figures.rendered_N_per_m == close_to(1e3 * stiffness).epsilon(0.01));
         CHECK(figures.failed_ticks == 0);
     }
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/tangible/small_strip.h"
 #include "tests/temporary_folder.h"
@@ -71,7 +72,7 @@ TEST_CASE("plant: the sensor reads at its own times, late by its delay, with noi
         read_s = reading.sensor_s;
         if (k >= 2) CHECK(std::abs(reading.sensor_m - 0.1 * (reading.sensor_s - 0.005)) < 1e-12);
     }
-    CHECK(read_s == doctest::Approx(0.085));  // 80 ms was read, 5 ms later it came
+    CHECK(read_s == close_to(0.085));  // 80 ms was read, 5 ms later it came
     options.sensor.noise_m = 1e-5;
     const Plant noisy = make_plant(model, options, plan.loop);
     const auto first = [&](std::uint64_t seed) {
@@ -105,7 +106,7 @@ TEST_CASE("plant: a hand comes to rest where its force is the wanted one, with m
             answer = mass_kg > 0.0 ? push_plant(plant, command, in.time_s, hand_N, body)
                                    : yield_to_hand(plant, command, in.time_s, hand_N, body);
         }
-        CHECK(body.depth_m == doctest::Approx(3e-3).scale(0.0).epsilon(0.05));
+        CHECK(body.depth_m == close_to(3e-3).epsilon(0.05));
     }
 }
 

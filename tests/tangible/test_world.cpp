@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "tests/close_to.h"
 #include "tests/tangible/small_strip.h"
 
 using namespace palpa;
@@ -11,13 +12,13 @@ TEST_CASE("virtual world: force and slope carry the scene's scales, and nothing 
     scene::TissueWork work = scene::make_work(known.tissue);
     const scene::ForceCurve& curve = *scene::curve_of(known.tissue);
     const WorldForce plain = world_force(known.world, {0.0, 0.0}, 3e-3, work);
-    CHECK(plain.force_N == doctest::Approx(scene::force_at_N(curve, 3e-3)));
+    CHECK(plain.force_N == close_to(scene::force_at_N(curve, 3e-3)));
     CHECK(plain.proxy_m == 3e-3);
     known.world.force_N_per_N = 2.0;
     known.world.depth_scale = 0.5;
     const WorldForce scaled = world_force(known.world, {0.0, 0.0}, 6e-3, work);
-    CHECK(scaled.force_N == doctest::Approx(2.0 * plain.force_N));
-    CHECK(scaled.slope_N_per_m == doctest::Approx(plain.slope_N_per_m));
+    CHECK(scaled.force_N == close_to(2.0 * plain.force_N));
+    CHECK(scaled.slope_N_per_m == close_to(plain.slope_N_per_m));
     CHECK(world_force(known.world, {0.0, 0.0}, -1e-3, work).force_N == 0.0);
     CHECK(world_force(known.world, {0.0, 0.0}, 1.0, work).saturated);
 }
@@ -32,5 +33,5 @@ TEST_CASE("virtual world: a map's force at a depth is the force that reaches thi
     scene::Contact contact;
     scene::answer(plan.tissue, scene::StageId::depth, {plan.area.centre_m, force.force_N, {}, true, 1.0}, work,
                   contact);
-    CHECK(contact.depth_m == doctest::Approx(4e-3).scale(0.0).epsilon(1e-6));
+    CHECK(contact.depth_m == close_to(4e-3).epsilon(1e-6));
 }

@@ -7,6 +7,7 @@
 
 #include "files/json.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/shell.h"
 #include "tests/temporary_folder.h"
@@ -68,8 +69,7 @@ TEST_CASE("calibrate fit: exact points give the paper's curve, a profile that th
     REQUIRE(check.status == 0);
     const Json checked = parse_json(check.out, "stdout");
     CHECK(checked["predicted_N"].size() == 57);
-    CHECK(checked["predicted_N"][56].get<double>() ==
-          doctest::Approx(0.0827 * std::exp(0.0039 * 1023.0)).epsilon(1e-9));
+    CHECK(checked["predicted_N"][56].get<double>() == close_to(0.0827 * std::exp(0.0039 * 1023.0)).epsilon(1e-9));
     CHECK(checked["median_relative_error"].get<double>() < 1e-9);
     CHECK(checked["relative_error_bands"].size() == 5);
     write_text_atomically(folder / "still.csv", "level,force_N\n100,0\n500,0\n1000,0\n");
@@ -147,8 +147,8 @@ TEST_CASE("calibrate fit: reads the recordings of real pens as they are") {
     REQUIRE(fit.status == 0);
     const Json json = parse_json(fit.out, "stdout");
     CHECK(json["n_points"] == 28);
-    CHECK(json["activation_force_N"].get<double>() == doctest::Approx(0.127486));
-    CHECK(json["saturation_force_N"].get<double>() == doctest::Approx(2.476179));
+    CHECK(json["activation_force_N"].get<double>() == close_to(0.127486));
+    CHECK(json["saturation_force_N"].get<double>() == close_to(2.476179));
     CHECK(read_json(profile)["device"]["tablet"] == "huion.tablet.h640p");
     CHECK(calibrate("check " + profile + " " + kPens + " --where inventory_id=HUP.0024").status == 0);
     const Called all = calibrate("fit " + kPens + " -o " + profile + " --bootstrap 0");
@@ -173,9 +173,9 @@ TEST_CASE("bench pens: auto predicts left-out points of 94 real sessions within 
     }
     // the yardsticks: the paper's exponential and a cubic through all points, on the same split
     const Json& curves = json["splits"][0]["curves"];
-    CHECK(curves[0]["median_light"].get<double>() == doctest::Approx(0.83).epsilon(0.02));
-    CHECK(curves[0]["median_firm"].get<double>() == doctest::Approx(0.05).epsilon(0.03));
-    CHECK(curves[5]["median_light"].get<double>() == doctest::Approx(0.027).epsilon(0.05));
+    CHECK(curves[0]["median_light"].get<double>() == close_to(0.83).epsilon(0.02));
+    CHECK(curves[0]["median_firm"].get<double>() == close_to(0.05).epsilon(0.03));
+    CHECK(curves[5]["median_light"].get<double>() == close_to(0.027).epsilon(0.05));
 }
 
 TEST_CASE("calibrate fit: intervals need enough resampled fits, or none are asked for") {

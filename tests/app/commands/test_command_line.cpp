@@ -8,6 +8,7 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -140,11 +141,11 @@ TEST_CASE("command line: maps info, sample, generate and import") {
     CHECK(info["source"]["kind"] == "simulated");
     const Json at =
         parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --depth-mm 7 --json").out, "stdout");
-    CHECK(at["force_N"].get<double>() == doctest::Approx(2.98).epsilon(0.01));
+    CHECK(at["force_N"].get<double>() == close_to(2.98).epsilon(0.01));
     const std::string force = number_text(at["force_N"].get<double>());
     const Json back = parse_json(
         palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --force-N " + force + " --json").out, "stdout");
-    CHECK(back["depth_mm"].get<double>() == doctest::Approx(7.0).epsilon(1e-9));
+    CHECK(back["depth_mm"].get<double>() == close_to(7.0).epsilon(1e-9));
     CHECK(palpa_with("maps generate --method analytic " + kAssets + "phantoms/silicone.json -o " +
                      (folder / "s.map").string())
               .status == 0);

@@ -6,6 +6,7 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/fem/fem_cases.h"
 #include "tests/files/vtu_reader.h"
@@ -56,10 +57,10 @@ TEST_CASE("fem solve: help, a table for people, JSON with every key that design 
     CHECK(json["dofs"] == 3 * (1352 - 169));
     CHECK(json["converged"] == true);
     CHECK(json["linear_range"]["gauge"] == "green");
-    CHECK(json["centre_displacement_mm"].get<double>() == doctest::Approx(0.85).epsilon(1e-9));
+    CHECK(json["centre_displacement_mm"].get<double>() == close_to(0.85).epsilon(1e-9));
     CHECK(json["reaction_N"][0]["support"] == "zmin");
     CHECK(json["reaction_N"][0]["force_N"][2].get<double>() ==
-          doctest::Approx(-json["contact"]["force_N"][2].get<double>()).epsilon(1e-9));
+          close_to(-json["contact"]["force_N"][2].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("fem solve: every result names law and element; large strains report how equilibrium was found") {
@@ -76,7 +77,7 @@ TEST_CASE("fem solve: every result names law and element; large strains report h
     const Json json = parse_json(called.out, "stdout");
     CHECK(json["law"] == "neo-hookean-split");
     CHECK(json["element"] == "hex8-bbar");
-    CHECK(json["reaction_N"][2]["force_N"][2].get<double>() == doctest::Approx(-27.17305).epsilon(2e-7));
+    CHECK(json["reaction_N"][2]["force_N"][2].get<double>() == close_to(-27.17305).epsilon(2e-7));
     CHECK(json["newton"]["load_share"] == 1.0);
     CHECK(json["newton"]["stable"] == true);
     CHECK(json["linear_range"].is_null());
@@ -101,18 +102,17 @@ TEST_CASE("fem solve: the VTU holds the field that the JSON sums up") {
         largest = std::max(largest, std::hypot(u_mm[3 * i], u_mm[3 * i + 1], u_mm[3 * i + 2]));
         sum_N += reaction[3 * i + 2];
     }
-    CHECK(largest == doctest::Approx(json["max_displacement_mm"].get<double>()).epsilon(1e-12));
-    CHECK(sum_N == doctest::Approx(json["reaction_N"][0]["force_N"][2].get<double>()).epsilon(1e-12));
+    CHECK(largest == close_to(json["max_displacement_mm"].get<double>()).epsilon(1e-12));
+    CHECK(sum_N == close_to(json["reaction_N"][0]["force_N"][2].get<double>()).epsilon(1e-12));
     CHECK(vtu.doubles("Points")[3 * 1351] == 100.0);  // mm
     CHECK(vtu.components("strain") == 6);
     CHECK(vtu.components("stress_Pa") == 6);
     const auto strain = vtu.doubles("strain");
     const auto stress = vtu.doubles("stress_Pa");
-    CHECK(stress[3] ==
-          doctest::Approx(2.0 * 2500.0 / 2.9 * strain[3]).epsilon(1e-9));  // tensor shear: sigma = 2 mu eps
+    CHECK(stress[3] == close_to(2.0 * 2500.0 / 2.9 * strain[3]).epsilon(1e-9));  // tensor shear: sigma = 2 mu eps
     double von_mises = 0.0;
     for (const double value : vtu.doubles("von_mises_Pa")) von_mises = std::max(von_mises, value);
-    CHECK(von_mises == doctest::Approx(json["max_von_mises_Pa"].get<double>()).epsilon(1e-12));
+    CHECK(von_mises == close_to(json["max_von_mises_Pa"].get<double>()).epsilon(1e-12));
     CHECK(vtu.doubles("material") == std::vector<double>(1008, 0.0));
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("fem solve: a contact that the mesh cannot resolve is said, whatever c
     const Json json = parse_json(called.out, "stdout");
     REQUIRE(json["warnings"].size() >= 1);
     CHECK(contains(json["warnings"].dump(), "the contact's radius spans"));
-    CHECK(json["contact"]["cells_across_radius"].get<double>() == doctest::Approx(0.0559).epsilon(0.01));
+    CHECK(json["contact"]["cells_across_radius"].get<double>() == close_to(0.0559).epsilon(0.01));
     CHECK(json["contact"]["area_mm2"].get<double>() < 0.3);  // the node's whole share is 16
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("fem solve: a force with friction is met where nodes join at once and 
     CHECK_MESSAGE(met.status == 0, met.err);
     const Json json = parse_json(met.out, "stdout");
     CHECK(json["converged"] == true);
-    CHECK(json["contact"]["force_N"][2].get<double>() == doctest::Approx(-0.05).epsilon(1e-4));
+    CHECK(json["contact"]["force_N"][2].get<double>() == close_to(-0.05).epsilon(1e-4));
     CHECK(json["contact"]["depth_mm"].get<double>() > 2.15);
     CHECK(json["contact"]["depth_mm"].get<double>() < 3.0);
 }

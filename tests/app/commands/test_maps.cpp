@@ -13,6 +13,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/shell.h"
 #include "tests/study/python.h"
@@ -132,8 +133,8 @@ TEST_CASE("command maps export: every format gives back the same floats") {
     std::vector<float> normal, along_x;
     while (table.next()) {
         const std::size_t cell = normal.size() % map.n_cells();
-        CHECK(table.number(table.column("x_mm")) == doctest::Approx(1e3 * map.x_of(cell % map.n_x)));
-        CHECK(table.number(table.column("y_mm")) == doctest::Approx(1e3 * map.y_of(cell / map.n_x)));
+        CHECK(table.number(table.column("x_mm")) == close_to(1e3 * map.x_of(cell % map.n_x)));
+        CHECK(table.number(table.column("y_mm")) == close_to(1e3 * map.y_of(cell / map.n_x)));
         normal.push_back(static_cast<float>(table.number(table.column("normal_N"))));
         along_x.push_back(static_cast<float>(table.number(table.column("tangential_x_N"))));
     }
@@ -225,7 +226,7 @@ TEST_CASE("command maps compare: figures of difference, as text, JSON and pictur
     CHECK(
         contains(text.out, "  bias 0.49"));  // one force was missing: interpolated over depth, where the rise is shared
     const Json json = parse_json(maps("compare " + pair + " --json").out, "stdout");
-    CHECK(json["all"]["rms_N"].get<double>() == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(json["all"]["rms_N"].get<double>() == close_to(0.5).epsilon(0.01));
     CHECK(json["grid_of"] == "a");
     CHECK(json["depths"].size() == 2);
     refused("compare " + pair + " -o x.gif", "expected .png, .svg or .pdf");

@@ -13,6 +13,7 @@
 #include "files/npy.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/shell.h"
 #include "tests/temporary_folder.h"
@@ -71,7 +72,7 @@ TEST_CASE(
     CHECK(contains(called.out, "map against recording: "));
     CHECK(called.err == "");
     const Map map = read_map(folder / "x.map");
-    CHECK(map.normal_N.back() == doctest::Approx(2.0f));
+    CHECK(map.normal_N.back() == close_to(2.0f));
     CHECK(map.noise_N.has_value());
     const std::string help = import(folder, "--help").out;
     CHECK(map.source.choices.size() > 8);
@@ -107,7 +108,7 @@ TEST_CASE("maps import: the JSON has the map, the residual and its shares") {
     CHECK(json["import"]["form"] == "probing");
     CHECK(json["import"]["residual_points"] == 24);
     CHECK(json["import"]["median_residual_share"].get<double>() < 1e-6);
-    CHECK(json["import"]["greatest_force_N"].get<double>() == doctest::Approx(1.25));
+    CHECK(json["import"]["greatest_force_N"].get<double>() == close_to(1.25));
     std::set<std::string> keys;
     for (const Json& choice : json["source"]["choices"]) keys.insert(choice["key"].get<std::string>());
     for (const char* key : {"form", "columns", "grid", "pitch_mm", "depths_mm", "contact", "outliers_deviations",
@@ -128,9 +129,9 @@ TEST_CASE("maps import: matrices, one file per depth") {
     const Map map = read_map(folder / "m.map");
     CHECK(map.depths_m.size() == 2);
     CHECK(std::isnan(map.normal_N[3]));
-    CHECK(map.filled_normal_N[3] == doctest::Approx(0.6f));
+    CHECK(map.filled_normal_N[3] == close_to(0.6f));
     CHECK(map.tangential == TangentialKind::energy);
-    CHECK(map.spacing_m[1] == doctest::Approx(2e-3));
+    CHECK(map.spacing_m[1] == close_to(2e-3));
     CHECK(std::filesystem::exists(folder / "m.map/filled_normal_N.npy"));
     CHECK(import(folder, "normal_4mm.csv normal_2mm.csv --spacing-mm 1 --no-fill -o n.map").status == 0);
     CHECK_FALSE(std::filesystem::exists(folder / "n.map/filled_normal_N.npy"));
@@ -174,7 +175,7 @@ TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves
     refused("none.csv -o n.map", "none.csv: cannot be read");
     refused("r.csv " + kColumns + "-o none/n.map", "no folder to put it into");
     CHECK(import(folder, "mN.csv --force-unit mN -o n.map").status == 0);
-    CHECK(read_map(folder / "n.map").normal_N.back() == doctest::Approx(2.1f));
+    CHECK(read_map(folder / "n.map").normal_N.back() == close_to(2.1f));
 }
 
 TEST_CASE("maps import: hostile recordings end with status 2 and a message that names what is wrong") {

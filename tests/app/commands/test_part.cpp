@@ -8,6 +8,7 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -41,9 +42,9 @@ TEST_CASE(
             palpa_with("part evaluate " + kParts + "beams/" + beam.name + ".json --tolerance 1e-8 --json");
         REQUIRE_MESSAGE(called.status == 0, called.err);
         const Json json = parse_json(called.out, "stdout");
-        CHECK(displacement_mm(json, "euler-bernoulli") == doctest::Approx(beam.euler_mm).epsilon(2e-6));
-        CHECK(displacement_mm(json, "timoshenko") == doctest::Approx(beam.timoshenko_mm).epsilon(2e-6));
-        CHECK(displacement_mm(json, "voxels") == doctest::Approx(beam.voxels_mm).epsilon(1e-6));
+        CHECK(displacement_mm(json, "euler-bernoulli") == close_to(beam.euler_mm).epsilon(2e-6));
+        CHECK(displacement_mm(json, "timoshenko") == close_to(beam.timoshenko_mm).epsilon(2e-6));
+        CHECK(displacement_mm(json, "voxels") == close_to(beam.voxels_mm).epsilon(1e-6));
         CHECK(json["methods"]["voxels"]["converged"] == true);
         CHECK(json["methods"]["timoshenko"]["applies"] == true);
         CHECK(json["methods"]["timoshenko"]["error_against"] == "voxels");
@@ -100,7 +101,7 @@ TEST_CASE("part evaluate: every method has every key, null where it has no such 
             CHECK(method.value().contains(key));
     }
     CHECK(json["methods"]["paper"]["applies"] == false);
-    CHECK(json["methods"]["paper"]["stiffness_N_per_m"].get<double>() == doctest::Approx(13833.33).epsilon(1e-5));
+    CHECK(json["methods"]["paper"]["stiffness_N_per_m"].get<double>() == close_to(13833.33).epsilon(1e-5));
 }
 
 TEST_CASE("part scenes: three presses of a button switch it on three times, and two replays log the same") {

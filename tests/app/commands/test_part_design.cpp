@@ -6,6 +6,7 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -40,7 +41,7 @@ TEST_CASE("part edit: permute and its inverse give the hash again, the mass chan
     CHECK(after["runs_sha256"] == edited["runs_sha256"]);
     CHECK(after["runs_sha256"] != before["runs_sha256"]);
     CHECK(after["mass_g"].get<double>() - before["mass_g"].get<double>() ==
-          doctest::Approx(1.0 * (1.020 - 1.200)).epsilon(1e-9));
+          close_to(1.0 * (1.020 - 1.200)).epsilon(1e-9));
     json_of("part edit " + b + R"( --op '{"permute": )" + box + R"(, "material": "hard"}' -o )" + c);
     CHECK(json_of("part info " + c)["runs_sha256"] == before["runs_sha256"]);
     json_of("part edit " + c + " --undo 2 -o " + d);
@@ -90,12 +91,12 @@ TEST_CASE("part compare: the alternating and the layered beam, with a figure") {
     const std::string other = kShipped + "beams/homogeneous.json";
     const Json json = json_of("part compare " + kBeam + " " + other + " --tolerance 1e-6" +
                               (has_gnuplot() ? " -o " + quoted(folder / "f.svg") : ""));
-    CHECK(json["stiffness_ratio"].get<double>() == doctest::Approx(1.0044452 / 0.4816322).epsilon(1e-5));
-    CHECK(json["mass_ratio"].get<double>() == doctest::Approx(12.0 / (0.6 * 12.0 + 0.4 * 10.2)).epsilon(1e-9));
+    CHECK(json["stiffness_ratio"].get<double>() == close_to(1.0044452 / 0.4816322).epsilon(1e-5));
+    CHECK(json["mass_ratio"].get<double>() == close_to(12.0 / (0.6 * 12.0 + 0.4 * 10.2)).epsilon(1e-9));
     CHECK(json["switch_force_ratio"].is_null());
-    CHECK(json["felt"]["thresholds"][1]["weber_percent"] == doctest::Approx(22.0));
+    CHECK(json["felt"]["thresholds"][1]["weber_percent"] == close_to(22.0));
     CHECK(json["felt"]["thresholds"][1]["beyond"] == true);
-    CHECK(json["a"]["mass_g"].get<double>() == doctest::Approx(11.28));
+    CHECK(json["a"]["mass_g"].get<double>() == close_to(11.28));
     if (has_gnuplot()) CHECK(std::filesystem::exists(folder / "f.svg"));
     CHECK(test::contains(palpa_with("part compare " + kBeam + " " + kBeam).out, "within the 15 %"));
     CHECK(palpa_with("part compare " + kBeam + " " + other + " -o a.gif").status == 2);
@@ -118,7 +119,7 @@ TEST_CASE("part export: 3MF, STL, slices and runs, each with its JSON, and the s
             CHECK(std::filesystem::exists(folder / file["file"].get<std::string>()));
             sum += file["volume_mm3"].get<double>();
         }
-        CHECK(sum == doctest::Approx(mm3).epsilon(1e-9));
+        CHECK(sum == close_to(mm3).epsilon(1e-9));
     }
     palpa_with("part export " + kBeam + " -o b.3mf", "cd " + folder.path().string() + " &&");
     CHECK(read_text(folder / "b.3mf") == read_text(folder / "a.3mf"));

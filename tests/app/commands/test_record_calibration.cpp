@@ -15,6 +15,7 @@
 #include "files/json.h"
 #include "files/table.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/shell.h"
 #include "tests/temporary_folder.h"
@@ -56,7 +57,7 @@ TEST_CASE("record: pen and Net F/T give points until the curve is known; they fi
     const Json fitted = parse_json(fit.out, "stdout");
     // the simulated pen: level = log(F / 0.05) / log(2.5 / 0.05)
     CHECK(fitted["median_relative_error"].get<double>() < 0.01);
-    CHECK(fitted["force_at_full_N"].get<double>() == doctest::Approx(2.5).epsilon(0.05));
+    CHECK(fitted["force_at_full_N"].get<double>() == close_to(2.5).epsilon(0.05));
     const std::string forces = read_text(session + "/forces-01.tsv");
     CHECK(contains(forces, "t_host_s\tt_device_s\tforce_N\traw"));
     CHECK(std::count(forces.begin(), forces.end(), '\n') > 10000);
@@ -102,8 +103,8 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     CHECK(json["points"].get<long>() > had + 5);
     const Called fit = shell(PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " + session + "/p.json");
     CAPTURE(fit.err);
-    CHECK(fit.status == 0);                                                               // times that rise all through
-    CHECK(json["sensor"]["zero_N"].get<double>() == doctest::Approx(2.1).epsilon(0.01));  // 84,000 counts without load
+    CHECK(fit.status == 0);                                                        // times that rise all through
+    CHECK(json["sensor"]["zero_N"].get<double>() == close_to(2.1).epsilon(0.01));  // 84,000 counts without load
     CHECK(json["sensor"]["health"]["stalls"].get<int>() >= 1);
     CHECK(contains(resumed.err, "has stopped"));
     CHECK(std::filesystem::exists(session + "/forces-02.tsv"));
@@ -124,6 +125,16 @@ TEST_CASE("record: what a scale shows is typed in while the pen is held still") 
     CHECK(contains(record.err, "found 'abc', expected what the scale shows"));
     CHECK(parse_json(record.out, "stdout")["points"].get<int>() >= 1);
     CHECK(contains(read_text(session + "/points.csv"), number_text(12 * 9.80665e-3)));
+    CHECK(contains(read_text(session + "/forces-01.tsv"), "\t" + number_text(12 * 9.80665e-3) + "\t12\n"));
+}
+
+TEST_CASE("record: a session without points is begun again without --resume") {
+    const TemporaryFolder folder;
+    const std::string record =
+        kRecord + "-o " + (folder / "s").string() + " --sensor typed --levels /dev/null </dev/null";
+    CHECK(shell(record).status == 0);
+    CHECK(shell(record).status == 0);
+    CHECK(std::filesystem::exists(folder / "s/levels-02.tsv"));
 }
 
 TEST_CASE("record: two recordings at once do not share a folder") {
@@ -210,7 +221,7 @@ TEST_CASE("record: a sensor that was away gets its zero anew, and no point has t
     REQUIRE(record.status == 0);
     CHECK(contains(record.err, "is back: lift the pen"));
     const Json json = parse_json(record.out, "stdout");
-    CHECK(json["sensor"]["zero_N"].get<double>() == doctest::Approx(2.5).epsilon(0.01));
+    CHECK(json["sensor"]["zero_N"].get<double>() == close_to(2.5).epsilon(0.01));
     std::map<double, std::vector<double>> forces_N;  // by level
     Table points = read_csv(session + "/points.csv");
     const std::size_t level = points.column("level"), force_N = points.column("force_N");

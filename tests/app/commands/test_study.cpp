@@ -9,6 +9,7 @@
 #include "files/folder_lock.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/shell.h"
 #include "tests/temporary_folder.h"
@@ -164,7 +165,7 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     const Called called = study("analyse " + kCounts + " --json -o " + (folder / "report").string());
     CHECK(called.status == 0);
     const Json json = parse_json(called.out, "stdout");
-    CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
+    CHECK(json["conditions"]["S-pen"]["se"].get<double>() == close_to(55.0 / 60.0));
     CHECK(json == read_json(folder / "report/report.json"));
     for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md",
                              "figures.gp", "sensitivity.json", "pairs.json", "stard.md"}) {
@@ -630,6 +631,24 @@ TEST_CASE("command study: one program at a time writes into a whole folder; sing
                              log);
     CHECK(run.status == 2);
     CHECK(contains(run.err, "found the folder of a study (study.json)"));
+}
+
+TEST_CASE("command study run: without a display nothing is written") {
+    const TemporaryFolder folder;
+    const Called called =
+        shell("env -u DISPLAY -u WAYLAND_DISPLAY -u XDG_RUNTIME_DIR -u SDL_VIDEODRIVER timeout 60 " PALPA_PROGRAM
+              " study run " PALPA_SOURCE_DIR "/assets/protocols/effects.json --log " +
+              (folder / "log").string());
+    CHECK(called.status == 1);
+    CHECK(contains(called.err, "no display: DISPLAY is not set"));
+    CHECK_FALSE(std::filesystem::exists(folder / "log"));
+}
+
+TEST_CASE("command study power: a number that is asked for twice would be counted twice, and is refused") {
+    const std::string power = "power " PALPA_SOURCE_DIR "/assets/protocols/effects.json --runs 1 ";
+    refused(power + "--participants 8,6,8", "--participants: found 8 twice");
+    refused(power + "--participants 8 --effect 0,1,0.0", "--effect: found 0 twice");
+    refused(power + "--participants 8 --noise 1,1", "--noise: found 1 twice");
 }
 
 TEST_CASE("command study exclude, replace: decisions are written, reported and refused where they cannot be") {

@@ -7,6 +7,7 @@
 #include "files/json.h"
 #include "tests/app/palpa_with.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/tactile/slab_phantom.h"
 
@@ -109,7 +110,7 @@ TEST_CASE(
         slab.tactile(command + slab.file("d") + " --compensation " + slab.file("a/compensation.json"));
     const files::Json of_file = files::parse_json(stored.out, "stdout");
     CHECK(of_file["mean_error_percent"].get<double>() ==
-          doctest::Approx(json["mean_error_percent"].get<double>()).epsilon(0.02));
+          close_to(json["mean_error_percent"].get<double>()).epsilon(0.02));
 }
 
 TEST_CASE("characterise: over the link, one stiffness, in real time") {
@@ -162,8 +163,8 @@ TEST_CASE("identify: finds an arm's parameters and writes them") {
         slab.tactile("identify --simulate --virtual-time --seed 0 -o " + slab.file("c.json") + " --json");
     REQUIRE(called.status == 0);
     const files::Json json = files::parse_json(called.out, "stdout");
-    CHECK(json["coulomb_N"].get<double>() == doctest::Approx(2.0).epsilon(0.03));
-    CHECK(json["weight_N"].get<double>() == doctest::Approx(0.8 * 9.80665).epsilon(0.01));
-    CHECK(json["ripple"]["wavelength_mm"].get<double>() == doctest::Approx(12.0).epsilon(0.01));
+    CHECK(json["coulomb_N"].get<double>() == close_to(2.0).epsilon(0.03));
+    CHECK(json["weight_N"].get<double>() == close_to(0.8 * 9.80665).epsilon(0.01));
+    CHECK(json["ripple"]["wavelength_mm"].get<double>() == close_to(12.0).epsilon(0.01));
     CHECK(files::read_json(slab.folder / "c.json")["kind"] == "compensation");
 }

@@ -8,6 +8,7 @@
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
 #include "tests/assets.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -49,12 +50,19 @@ TEST_CASE("tangible info: the counts of the two devices of the paper, and what t
     REQUIRE(strip["actuators"].size() == 2);
     for (const char* key : {"name", "kind", "unit", "lower", "upper", "tie"})
         CHECK(strip["actuators"][0].contains(key));
-    CHECK(strip["weight_N"].get<double>() == doctest::Approx(0.08).epsilon(0.1));
+    CHECK(strip["weight_N"].get<double>() == close_to(0.08).epsilon(0.1));
     const files::Json accordion = result_of(palpa_with("tangible info accordion.json --json"));
-    CHECK(accordion["nodes"].get<double>() == doctest::Approx(858).epsilon(0.03));
-    CHECK(accordion["elements"].get<double>() == doctest::Approx(2743).epsilon(0.03));
+    CHECK(accordion["nodes"].get<double>() == close_to(858).epsilon(0.03));
+    CHECK(accordion["elements"].get<double>() == close_to(2743).epsilon(0.03));
     CHECK(accordion["actuators"].size() == 4);
     CHECK_FALSE(accordion["warnings"].empty());  // one linear tetrahedron through a thin wall
+    CHECK(accordion["fit"]["lag_ms"] == 0.0);
+    const StripFolder folder;
+    files::Json worn = files::read_json(folder.path("strip.json"));
+    worn["fit"] = {{"modulus_factor", 0.9}, {"lag_ms", 50.0}};
+    files::write_text_atomically(folder.path("worn.json"), worn.dump());
+    CHECK(contains(palpa_with("tangible info " + folder.path("worn.json")).out, "fit: modulus 0.9 of the file's"));
+    CHECK(contains(palpa_with("tangible info " + folder.path("worn.json")).out, "lag 50 ms"));
 }
 
 TEST_CASE("tangible solve: every term of a press that can be rendered, and what limits one that cannot") {
@@ -103,7 +111,7 @@ TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is fou
     const std::string fit = "tangible fit " + strip.path("strip.json") + " " + table + " --json -o ";
     CHECK(palpa_with(fit + strip.path("strip.json")).status == 2);  // an input is never replaced
     CHECK(result_of(palpa_with(fit + strip.path("new.json")))["modulus_factor"].get<double>() ==
-          doctest::Approx(1.1).epsilon(0.02));
+          close_to(1.1).epsilon(0.02));
     CHECK(files::read_json(strip.folder / "new.json")["fit"].contains("friction_share"));
     files::write_text_atomically(strip.folder / "m.tsv",
                                  "time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n0\t4000\t0.1\t1\t1\n");

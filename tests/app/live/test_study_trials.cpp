@@ -1,12 +1,15 @@
 // A study's trials in the app: what would be lost by closing asks first. The window is off screen.
 
 #include <SDL.h>
+#include <chrono>
 #include <doctest/doctest.h>
+#include <thread>
 
 #include "app/study/study_run.h"
 #include "files/text.h"
 #include "tests/app/live/desk.h"
 #include "tests/app/screens/typing.h"
+#include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -85,6 +88,36 @@ TEST_CASE("live: closing in the middle of a pair asks first, and Enter says that
     choose_softer(true, 9.0, desk.run());
     desk.step();
     CHECK_FALSE(desk.asks_to_quit());
+}
+
+TEST_CASE("live: a surface or a trial that nobody touches in its time is repeated, and counts for nothing") {
+    for (const char* task :
+         {R"("choice": {"reference_kPa": 10, "comparisons_kPa": [20], "repeats": 2})", R"("repeats": 2)"}) {
+        CAPTURE(task);
+        const TemporaryFolder log;
+        StudyDesk desk(log, std::string(R"("time_limit_s": 0.3, )") + task);
+        REQUIRE(trial_goes_on(desk.run()));
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        desk.step();
+        REQUIRE(at<step::Device>(desk.run()));
+        CHECK(std::get<step::Device>(desk.run().step).untouched);
+        CHECK(desk.run().interval == 0);
+        CHECK(desk.run().progress.finished.empty());
+        desk.step();
+        desk.show_frame();
+        desk.step(BeginStep{});
+        desk.step();
+        REQUIRE(trial_goes_on(desk.run()));
+        desk.press();
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        desk.step();
+        CHECK_FALSE(at<step::Device>(desk.run()));
+        CHECK(desk.run().interval + static_cast<int>(desk.run().progress.finished.size()) == 1);
+        const auto first = read_text(
+            log / "log/sub-01/beh" /
+            ("sub-01_task-" + std::string(desk.run().interval > 0 ? "interval" : "palpation") + "_run-01_events.tsv"));
+        CHECK(contains(first, "\tinterrupted\t"));
+    }
 }
 
 TEST_CASE("live: closing a study's trial that was touched asks first, with or without marks") {

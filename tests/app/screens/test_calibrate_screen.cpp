@@ -11,6 +11,7 @@
 #include "devices/force_sensor.h"
 #include "tests/app/live/desk.h"
 #include "tests/app/screens/typing.h"
+#include "tests/close_to.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -53,7 +54,7 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     tap(desk.window, SDLK_RETURN);
     frames(desk, 8);
     REQUIRE(form.recording->session.points.size() == 1);
-    CHECK(form.recording->session.points[0].force_N == doctest::Approx(5.0 * calibration::kN_per_gf));
+    CHECK(form.recording->session.points[0].force_N == close_to(5.0 * calibration::kN_per_gf));
     CHECK(form.guide.note == "Recorded.");
     tap(desk.window, SDLK_RETURN);  // twice
     frames(desk, 8);
@@ -66,6 +67,18 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 8);
     CHECK(form.guide.shown_gf == 7.0);
     CHECK(form.recording->session.points.size() == 2);
+    form.guide.again = true;
+    frames(desk, 5);
+    for (const char letter : std::string("999999")) type(desk.window, letter);
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 16);
+    CHECK(form.guide.note == words::kNotAForce);
+    CHECK(form.recording->session.points.size() == 2);
+    calibration::drop_last_point(*form.recording);
+    CHECK(form.recording->session.points.size() == 1);
+    hold(0.02, *form.recording);
+    CHECK(calibration::take_typed_N(7.0 * calibration::kN_per_gf, *form.recording));  // the same place again
+    form.guide.shown_gf = 7.0;
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     hold(0.06, *form.recording, 1.0);  // another level, and the scale shows the same number
     form.guide.again = true;
@@ -74,7 +87,7 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     tap(desk.window, SDLK_RETURN);
     frames(desk, 8);
     REQUIRE(form.recording->session.points.size() == 3);
-    CHECK(form.recording->session.points[2].force_N == doctest::Approx(7.0 * calibration::kN_per_gf));
+    CHECK(form.recording->session.points[2].force_N == close_to(7.0 * calibration::kN_per_gf));
 }
 
 TEST_CASE("calibrate screen: a load cell's newtons per count are asked for, and never assumed") {

@@ -4,11 +4,13 @@
 #include <random>
 
 #include "app/screens/device_check.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::app;
+using namespace palpa::test;
 
 namespace {
 
@@ -33,9 +35,9 @@ TEST_CASE("device check: rate, median and worst gap of a pen at 133 Hz with one 
     const ToolCheck& tool = of_tool(Tool::pen, *check);
     CHECK(tool.samples == 399);
     CHECK(tool.touching == 349);
-    CHECK(rate_Hz(tool) == doctest::Approx(398.0 / (399.0 / 133.0)).epsilon(1e-9));
-    CHECK(median_gap_s(tool) == doctest::Approx(1.0 / 133.0).epsilon(0.03));
-    CHECK(worst_gap_s(tool) == doctest::Approx(2.0 / 133.0).epsilon(1e-6));
+    CHECK(rate_Hz(tool) == close_to(398.0 / (399.0 / 133.0)).epsilon(1e-9));
+    CHECK(median_gap_s(tool) == close_to(1.0 / 133.0).epsilon(0.03));
+    CHECK(worst_gap_s(tool) == close_to(2.0 / 133.0).epsilon(1e-6));
     CHECK(of_tool(Tool::finger, *check).samples == 0);
     CHECK(rate_Hz(of_tool(Tool::finger, *check)) == 0.0);
 }
@@ -50,8 +52,8 @@ TEST_CASE("device check: a rest is not part of the rate, and host times in a bur
         observe(sample, *check);
     }
     const ToolCheck& tool = of_tool(Tool::pen, *check);
-    CHECK(rate_Hz(tool) == doctest::Approx(100.0).epsilon(1e-6));
-    CHECK(worst_gap_s(tool) == doctest::Approx(0.01).epsilon(1e-6));
+    CHECK(rate_Hz(tool) == close_to(100.0).epsilon(1e-6));
+    CHECK(worst_gap_s(tool) == close_to(0.01).epsilon(1e-6));
 }
 
 TEST_CASE("device check: how many samples come at a time, and how late") {
@@ -91,8 +93,8 @@ TEST_CASE("device check: fingers count together, each with its own gaps") {
     }
     const ToolCheck& tool = of_tool(Tool::finger, *check);
     CHECK(tool.samples == 900);
-    CHECK(rate_Hz(tool) == doctest::Approx(100.0).epsilon(1e-9));
-    CHECK(worst_gap_s(tool) == doctest::Approx(0.01).epsilon(1e-6));
+    CHECK(rate_Hz(tool) == close_to(100.0).epsilon(1e-9));
+    CHECK(worst_gap_s(tool) == close_to(0.01).epsilon(1e-6));
     CHECK(tool.contact_size);
     CHECK_FALSE(tool.tilt);
     CHECK(tool.x_px.lowest == 11.0);
@@ -149,7 +151,7 @@ TEST_CASE("device check: a clock that runs 120 ppm fast is found within its erro
         const ClockDrift drift = clock_drift(of_tool(Tool::pen, *check));
         // of a line through n points with uniform noise: sigma / (T sqrt(n / 12))
         const double expected_error_ppm = 1e6 * 0.004 / std::sqrt(12.0) / (60.0 * std::sqrt(14400.0 / 12.0));
-        CHECK(drift.standard_error_ppm == doctest::Approx(expected_error_ppm).epsilon(0.05));
+        CHECK(drift.standard_error_ppm == close_to(expected_error_ppm).epsilon(0.05));
         CHECK(std::abs(drift.ppm - ppm) < 4.0 * expected_error_ppm);
     }
 }
@@ -162,7 +164,7 @@ TEST_CASE("device check: without delays the drift is exact, from few samples too
         observe(sample, *check);
     }
     const ClockDrift drift = clock_drift(of_tool(Tool::pen, *check));
-    CHECK(drift.ppm == doctest::Approx(-1000.0).epsilon(1e-9));
+    CHECK(drift.ppm == close_to(-1000.0).epsilon(1e-9));
     CHECK(drift.standard_error_ppm < 1e-3);
 }
 

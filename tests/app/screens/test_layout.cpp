@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "app/screens/layout.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::app;
+using namespace palpa::test;
 
 TEST_CASE("layout: controls and tissue share the window without overlapping, whatever its size") {
     for (const bool left_handed : {false, true}) {
@@ -34,12 +36,12 @@ TEST_CASE("layout: controls and tissue share the window without overlapping, wha
 
 TEST_CASE("layout: a touched screen's own scale is used as far as the controls fit, a measured one always") {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    CHECK(control_scale(unknown, 2560.0f, 1600.0f, 12.6) == doctest::Approx(12.6));
-    CHECK(control_scale(unknown, 1600.0f, 2560.0f, 12.6) == doctest::Approx(12.6));
+    CHECK(control_scale(unknown, 2560.0f, 1600.0f, 12.6) == close_to(12.6));
+    CHECK(control_scale(unknown, 1600.0f, 2560.0f, 12.6) == close_to(12.6));
     const float small = control_scale(unknown, 1170.0f, 2532.0f, 18.9);  // a telephone
     CHECK(small < 18.0f);
     CHECK(layout_of(1170.0f, 2532.0f, small, false).controls);
-    CHECK(control_scale(18.0, 1170.0f, 2532.0f, 18.9) == doctest::Approx(18.0));
+    CHECK(control_scale(18.0, 1170.0f, 2532.0f, 18.9) == close_to(18.0));
 }
 
 TEST_CASE("layout: a column beside the tissue away from the hand, a strip above it on an upright window") {
@@ -57,7 +59,7 @@ TEST_CASE("layout: below the tissue is room for a finger that indents what lies 
     for (const auto& [width, height] : {std::pair{1280.0f, 800.0f}, std::pair{800.0f, 1280.0f}}) {
         const Layout under = layout_of(width, height, 3.78f, false);
         const Layout above = layout_of(width, height, 3.78f, false, true);
-        CHECK(above.tissue_px.y1 == doctest::Approx(under.tissue_px.y1 - 15.0f * 3.78f));
+        CHECK(above.tissue_px.y1 == close_to(under.tissue_px.y1 - 15.0f * 3.78f));
         CHECK(above.tissue_px.y0 == under.tissue_px.y0);
     }
 }

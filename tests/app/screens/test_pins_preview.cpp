@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/screens/pins_preview.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 #include "tests/tactile/tactile_scene.h"
 
@@ -44,7 +45,7 @@ TEST_CASE("pins preview: level at rest, a bowl under a press, within the stroke,
     CHECK(moment.force_N == 0.0);
     CHECK(spread_m(moment) < 1e-12);
     preview_pins(touched(0.5), *preview, moment);
-    CHECK(moment.force_N == doctest::Approx(0.5));
+    CHECK(moment.force_N == close_to(0.5));
     CHECK(moment.depth_m > 1e-4);
     CHECK(moment.wanted_m[0] > moment.wanted_m[14]);  // a corner stands above the middle
     CHECK_FALSE(moment.held);
@@ -52,7 +53,7 @@ TEST_CASE("pins preview: level at rest, a bowl under a press, within the stroke,
     const double at_limit_m = spread_m(moment);
     preview_pins(touched(9.0), *preview, moment);
     CHECK(moment.held);
-    CHECK(moment.force_N == doctest::Approx(1.5));
+    CHECK(moment.force_N == close_to(1.5));
     CHECK(spread_m(moment) == at_limit_m);
     for (const double height_m : moment.wanted_m) CHECK((height_m >= 0.0 && height_m <= moment.stroke_m));
 }
@@ -66,8 +67,8 @@ TEST_CASE("pins preview: a tissue that is twice as stiff bends half as much") {
     TactileMoment of_a, of_b;
     preview_pins(touched(0.3), *a, of_a);
     preview_pins(touched(0.3), *b, of_b);
-    CHECK(of_b.depth_m == doctest::Approx(0.5 * of_a.depth_m));
-    CHECK(spread_m(of_b) == doctest::Approx(0.5 * spread_m(of_a)).epsilon(1e-6));
+    CHECK(of_b.depth_m == close_to(0.5 * of_a.depth_m));
+    CHECK(spread_m(of_b) == close_to(0.5 * spread_m(of_a)).epsilon(1e-6));
 }
 
 TEST_CASE("pins preview: a pressure display shows shares of the greatest pressure") {
@@ -76,7 +77,7 @@ TEST_CASE("pins preview: a pressure display shows shares of the greatest pressur
     REQUIRE(preview);
     TactileMoment moment;
     preview_pins(touched(1.0), *preview, moment);
-    CHECK(*std::max_element(moment.wanted_m.begin(), moment.wanted_m.end()) == doctest::Approx(moment.stroke_m));
+    CHECK(*std::max_element(moment.wanted_m.begin(), moment.wanted_m.end()) == close_to(moment.stroke_m));
     preview_pins(touched(0.0), *preview, moment);
     CHECK(spread_m(moment) == 0.0);
 }

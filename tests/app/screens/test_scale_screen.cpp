@@ -4,6 +4,7 @@
 
 #include "tests/app/live/desk.h"
 #include "tests/app/screens/typing.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -68,10 +69,10 @@ TEST_CASE("scale screen: the frame is as large as it is dragged") {
     };
     drag(480, 520);  // the right edge by 40 px
     const double wider = desk.app.view.card_px_per_mm;
-    CHECK(wider == doctest::Approx(before + 2.0 * 40.0 / 85.6).epsilon(1e-3));
+    CHECK(wider == close_to(before + 2.0 * 40.0 / 85.6).epsilon(1e-3));
     drag(160, 180);  // the left one
-    CHECK(desk.app.view.card_px_per_mm == doctest::Approx(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
+    CHECK(desk.app.view.card_px_per_mm == close_to(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
     move_mouse(desk.window, 600, 300);  // nothing is held
     frames(desk, 3);
-    CHECK(desk.app.view.card_px_per_mm == doctest::Approx(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
+    CHECK(desk.app.view.card_px_per_mm == close_to(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
 }

@@ -16,6 +16,7 @@
 #include "app/screens/tangible_screen.h"
 #include "app/study/study_run.h"
 #include "scene/advance.h"
+#include "tests/close_to.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -647,7 +648,7 @@ TEST_CASE("screens: a map that cannot be read leaves the one that is shown, and 
     CHECK(browser->map.name == name);
     for (int i = 0; i < 6; ++i) add_pin({0.01 * i, 0.05}, *browser);
     CHECK(browser->pins_m.size() == kPins);
-    CHECK(browser->pins_m.back().x() == doctest::Approx(0.05));
+    CHECK(browser->pins_m.back().x() == close_to(0.05));
 }
 
 TEST_CASE("screens: parts fit at the sizes of desks and tablets: pressed, changed by the pen, a button") {

@@ -6,10 +6,12 @@
 #include "app/scene_choices.h"
 #include "app/study/felt_search.h"
 #include "scene/tissue.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::study;
 using namespace palpa::app;
+using namespace palpa::test;
 
 namespace {
 
@@ -47,7 +49,7 @@ TEST_CASE("felt search: a cast lets the hand sink by what the place's own stiffn
     const Sight there = cast.sight(plain);
     CHECK_FALSE(there.lag_shown);
     CHECK(there.dent_shown);
-    CHECK(there.depth_m / plain.contact.depth_m == doctest::Approx(1.0).epsilon(0.01));
+    CHECK(there.depth_m / plain.contact.depth_m == close_to(1.0).epsilon(0.01));
     const scene::State stiff = pressed(scene, nodule_m(scene), force_N);
     REQUIRE(stiff.contact.depth_m < 0.95 * plain.contact.depth_m);
     // the force that reaches the nodule's depth in the middle, by bisection
@@ -57,15 +59,15 @@ TEST_CASE("felt search: a cast lets the hand sink by what the place's own stiffn
         (pressed(scene, middle_m, mean_N).contact.depth_m < stiff.contact.depth_m ? low_N : high_N) = mean_N;
     }
     const double ratio = force_N / low_N;
-    CHECK(cast.sight(stiff).depth_m / plain.contact.depth_m == doctest::Approx(1.0 / ratio).epsilon(0.02));
-    CHECK(cast.sd() == doctest::Approx(0.1815).epsilon(0.01));  // of hand and fingertip joined
+    CHECK(cast.sight(stiff).depth_m / plain.contact.depth_m == close_to(1.0 / ratio).epsilon(0.02));
+    CHECK(cast.sd() == close_to(0.1815).epsilon(0.01));  // of hand and fingertip joined
 }
 
 TEST_CASE("felt search: a display at its limit feels alike everywhere, and one that shows nothing tells nothing") {
     const StudyScene scene = default_tissue();
     const FeltSearch saturated(scene, [](double) { return felt_by_hand(0.7); });
     const double there = saturated.sight(pressed(scene, scene.plan->area.centre_m, 1.5)).depth_m;
-    CHECK(saturated.sight(pressed(scene, nodule_m(scene), 1.5)).depth_m / there == doctest::Approx(1.0).epsilon(1e-9));
+    CHECK(saturated.sight(pressed(scene, nodule_m(scene), 1.5)).depth_m / there == close_to(1.0).epsilon(1e-9));
     const FeltSearch broken(scene, [](double) { return FeltStiffness{}; });
     CHECK(broken.felt_ln(3.0) == 0.0);
     scene::State lifted = pressed(scene, nodule_m(scene), 1.5);

@@ -9,6 +9,7 @@
 #include "app/study/simulate.h"
 #include "files/text.h"
 #include "study/read_logs.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -82,9 +83,9 @@ TEST_CASE("power: a study in memory has the results that its logs have") {
         CHECK(seen.judged[i].condition == logged.judged[i].condition);
         CHECK(seen.judged[i].reading.nl == logged.judged[i].reading.nl);
         CHECK(seen.judged[i].reading.ll == logged.judged[i].reading.ll);
-        CHECK(seen.trials[i].path_m == doctest::Approx(logged.trials[i].path_m));
-        CHECK(seen.trials[i].duration_s == doctest::Approx(logged.trials[i].duration_s));
-        CHECK(seen.trials[i].max_force_N == doctest::Approx(logged.trials[i].max_force_N));
+        CHECK(seen.trials[i].path_m == close_to(logged.trials[i].path_m));
+        CHECK(seen.trials[i].duration_s == close_to(logged.trials[i].duration_s));
+        CHECK(seen.trials[i].max_force_N == close_to(logged.trials[i].max_force_N));
     }
     CHECK(seen.primary.has_value());
 }

@@ -13,6 +13,7 @@
 #include "scene/advance.h"
 #include "study/ratings.h"
 #include "study/read_logs.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -311,7 +312,7 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
     CHECK(depth_m(1, 1.0) > 1.2 * depth_m(0, 1.0));  // half the modulus
     CHECK(depth_m(2, 1.0) < depth_m(0, 1.0) / 1.2);
     // half the force on half the modulus: the same depth
-    CHECK(depth_m(1, 0.5) == doctest::Approx(depth_m(0, 1.0)).epsilon(1e-5));
+    CHECK(depth_m(1, 0.5) == close_to(depth_m(0, 1.0)).epsilon(1e-5));
     CHECK(run.stimuli[0][1].plan->zone_N == run.stimuli[0][0].plan->zone_N);  // the force bar tells nothing
     CHECK(run.stimuli[0][1].plan->greatest_force_N == run.stimuli[0][0].plan->greatest_force_N);
 
@@ -454,7 +455,7 @@ TEST_CASE("study run: with reference_on every reference is presented under that 
     for (const StifferAnswers& answers : seen.stiffer) {
         CHECK(answers.axis == StiffnessAxis::comparison_reference);
         CHECK(answers.stiffer == 1);
-        CHECK(std::abs(answers.x) == doctest::Approx(std::log(2.0)));
+        CHECK(std::abs(answers.x) == close_to(std::log(2.0)));
     }
     CHECK(seen.conditions == std::vector<std::string>{"real", "shown"});
 }
@@ -645,11 +646,11 @@ TEST_CASE(
     CHECK(due_trial(run).practice);  // whose force bar shows the limit
     const auto scale = [&] { return due_scene(run).scene.stiffness_scale; };
     const bool reference_first = due_trial(run).reference_first;
-    CHECK(scale() == doctest::Approx(reference_first ? 1.0 : 2.0));  // practice shows the pair that differs most
+    CHECK(scale() == close_to(reference_first ? 1.0 : 2.0));  // practice shows the pair that differs most
     std::get<step::Trial>(run.step).begun = true;
     trial_finished(run);
     REQUIRE(trial_waits(run));
-    CHECK(scale() == doctest::Approx(reference_first ? 2.0 : 1.0));
+    CHECK(scale() == close_to(reference_first ? 2.0 : 1.0));
 }
 
 TEST_CASE("study run: a shape-display condition without driven devices is presented by the experimenter, or refused") {

@@ -4,9 +4,11 @@
 #include <doctest/doctest.h>
 
 #include "tangible/plant/plant_body.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::tangible;
+using namespace palpa::test;
 
 namespace {
 
@@ -49,9 +51,9 @@ TEST_CASE("plant body: a press goes to its depth at its greatest speed and back,
         deepest = std::max(deepest, press_share(motion, t_s));
         fastest = std::max(fastest, 6e-3 * (press_share(motion, t_s + 1e-3) - press_share(motion, t_s)) / 1e-3);
     }
-    CHECK(deepest == doctest::Approx(1.0).epsilon(1e-6));
-    CHECK(fastest == doctest::Approx(5e-3).epsilon(1e-3));
-    CHECK(press_share(motion, 3.5 * round_s) == doctest::Approx(press_share(motion, 0.5 * round_s)));
+    CHECK(deepest == close_to(1.0).epsilon(1e-6));
+    CHECK(fastest == close_to(5e-3).epsilon(1e-3));
+    CHECK(press_share(motion, 3.5 * round_s) == close_to(press_share(motion, 0.5 * round_s)));
 }
 
 TEST_CASE("plant body: the finger waits for the first command, is zeroed, and feels what the table says") {
@@ -62,9 +64,9 @@ TEST_CASE("plant body: the finger waits for the first command, is zeroed, and fe
     CHECK(displacement_m(body) == 0.0);
     run_body(body, 2.0, true, 0.5 + 0.2 + 1.875 * 6.0 / 5.0 + 0.002);
     CHECK(body.zeroed);
-    CHECK(body.finger_m == doctest::Approx(6e-3).epsilon(1e-3));
-    CHECK(body.force_N == doctest::Approx(2.0 * 6.0).epsilon(1e-3));
-    CHECK(displacement_m(body) == doctest::Approx(body.finger_m).epsilon(1e-3));
+    CHECK(body.finger_m == close_to(6e-3).epsilon(1e-3));
+    CHECK(body.force_N == close_to(2.0 * 6.0).epsilon(1e-3));
+    CHECK(displacement_m(body) == close_to(body.finger_m).epsilon(1e-3));
     run_body(body, 0.0, true, 0.01);
     CHECK(body.force_N == 0.0);
 }
@@ -74,11 +76,11 @@ TEST_CASE("plant body: drives lag; cables led by length have the tension of that
     PlantBody lagging = body_on(table);
     lagging.plant.options.lag_s = 0.05;
     run_body(lagging, 2.0, true, 0.05);
-    CHECK(lagging.actuation[0] == doctest::Approx(2.0 * (1.0 - std::exp(-1.0))).epsilon(1e-6));
+    CHECK(lagging.actuation[0] == close_to(2.0 * (1.0 - std::exp(-1.0))).epsilon(1e-6));
     PlantBody led = body_on(table);
     led.drive.by_length = true;
     run_body(led, 46e-3, true, 0.1);
-    CHECK(led.actuation[0] == doctest::Approx(2.0).epsilon(1e-3));
+    CHECK(led.actuation[0] == close_to(2.0).epsilon(1e-3));
     run_body(led, 51e-3, true, 0.1);
     CHECK(led.actuation[0] == 0.0);
 }
@@ -92,7 +94,7 @@ TEST_CASE("plant body: guides take their share of the tension while a cable is w
         drive_N += 5e-3;  // winds in at 10 mm/s
         step_body(1e-3, {drive_N}, true, body);
     }
-    CHECK(body.actuation[0] == doctest::Approx(0.9 * drive_N).epsilon(0.02));
+    CHECK(body.actuation[0] == close_to(0.9 * drive_N).epsilon(0.02));
 }
 
 TEST_CASE("plant body: a hand comes to rest where the device pushes back as hard") {
@@ -102,6 +104,6 @@ TEST_CASE("plant body: a hand comes to rest where the device pushes back as hard
     body.motion.hand_N = 3.0;
     body.motion.speed_m_per_s = 1e-3;
     run_body(body, 1.0, true, 0.7 + 1.875 * 6.0 / 1.0);
-    CHECK(body.force_N == doctest::Approx(3.0).epsilon(0.02));
-    CHECK(body.finger_m == doctest::Approx(3e-3).epsilon(0.02));
+    CHECK(body.force_N == close_to(3.0).epsilon(0.02));
+    CHECK(body.finger_m == close_to(3e-3).epsilon(0.02));
 }

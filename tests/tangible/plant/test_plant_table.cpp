@@ -5,10 +5,12 @@
 #include <limits>
 
 #include "tangible/plant/plant_table.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
 using namespace palpa::tangible;
+using namespace palpa::test;
 
 namespace {
 
@@ -61,14 +63,14 @@ TEST_CASE("plant table: at its nodes it is the converged equilibrium, between th
         for (const double pressed_m : {0.5e-3, 2e-3}) {
             const ForwardAnswer wanted = solved(model, tension_N, tension_N, surface_m + pressed_m);
             const PlantTouch found = touch(table, {tension_N, tension_N}, surface_m + pressed_m);
-            CHECK(found.force_N == doctest::Approx(wanted.force_N).epsilon(1e-5));
+            CHECK(found.force_N == close_to(wanted.force_N).epsilon(1e-5));
             CHECK(std::abs(found.length[0] - wanted.length[0]) < 1e-7);
         }
     }
     for (const double tension_N : {0.1, 0.3}) {
         const double depth_m = touch(table, {tension_N, tension_N}, 0.0).surface_m + 1.3e-3;
         const double wanted_N = solved(model, tension_N, tension_N, depth_m).force_N;
-        CHECK(touch(table, {tension_N, tension_N}, depth_m).force_N == doctest::Approx(wanted_N).epsilon(0.02));
+        CHECK(touch(table, {tension_N, tension_N}, depth_m).force_N == close_to(wanted_N).epsilon(0.02));
     }
 }
 
@@ -80,7 +82,7 @@ TEST_CASE("plant table: cables that are not tied count by their mean, and to fir
     const double surface_m = touch(table, {0.25, 0.25}, 0.0).surface_m;
     const double depth_m = surface_m + 1.2e-3;
     const double wanted_N = solved(model, 0.28, 0.22, depth_m).force_N;
-    CHECK(touch(table, {0.28, 0.22}, depth_m).force_N == doctest::Approx(wanted_N).epsilon(0.03));
+    CHECK(touch(table, {0.28, 0.22}, depth_m).force_N == close_to(wanted_N).epsilon(0.03));
 }
 
 TEST_CASE(
