@@ -111,7 +111,4 @@ class Window {
     std::unique_ptr<Impl> impl_;
 };
 
-// Throws std::runtime_error if the environment names no display: for programs that write before they open a window. Desk only.
-void check_display();
-
 }  // namespace palpa::platform

@@ -8,15 +8,11 @@
 #include "app/commands/study.h"
 #include "app/live/live.h"
 #include "files/json.h"
-#include "platform/window.h"
-#include "study/protocol.h"
 
 namespace palpa::app {
 namespace {
 
 void run(const RunOptions& options) {
-    study::read_protocol(options.protocol);  // whose faults come first
-    platform::check_display();               // before the study's folder is made
     const auto result = run_live(options);
     if (!result) return;
     const files::Json& json = *result;

@@ -46,7 +46,7 @@ void end_with_the_terminal() {
 
 void init_video(bool visible) {
     if (visible) {
-        check_display();
+        if (names_no_display()) throw std::runtime_error(no_display_message());
         // closing the window only asks to quit; signals and the end of the session do quit
         SDL_SetHint(SDL_HINT_QUIT_ON_LAST_WINDOW_CLOSE, "0");
         if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());
@@ -74,10 +74,6 @@ void ask_for_es3() {
 }
 
 }  // namespace
-
-void check_display() {
-    if (names_no_display()) throw std::runtime_error(no_display_message());
-}
 
 SizePx fitted(const SizePx& size, const SizePx& room) {
     if (room.width <= 0 || room.height <= 0) return size;
