@@ -292,7 +292,8 @@ std::string free_response_methods(const FreeResponseReport& found) {
     std::string out;
     if (!found.figures.empty()) {
         out =
-            "\nFree response: " + whole(found.cases_without) + " cases without lesions, " + whole(found.cases_with) +
+            "\nFree response: " + files::counted(found.cases_without, "case") + " without lesions, " +
+            whole(found.cases_with) +
             " with. wafroc = probability that a lesion is rated above the highest false mark on a case without "
             "lesions, each case with lesions counting the same; wafroc1 takes the false marks of all cases; afroc "
             "counts each lesion the same; hr_auc = area under the ROC curve inferred from the highest rating of a "

@@ -188,12 +188,16 @@ std::vector<PowerResult> summarise_power(const std::vector<PowerRow>& rows, std:
         PowerResult& result = results[places[power_key(row, row.participants)]];
         const Finding& f = row.finding;
         if (!f.label.empty()) result.what.label = f.label;  // what holds in one study is said of all
+        if (!std::isnan(f.p)) ++result.tested;
         if (f.p < alpha) ++result.rejections.hits;
         if (is_test(f)) result.rejections.n = studies;  // those in which it cannot be computed do not reject
         if (!f.has_interval() || std::isnan(result.truth)) continue;
         ++result.coverage.n;
         if (f.ci.low <= result.truth && result.truth <= f.ci.high) ++result.coverage.hits;
     }
+    std::stable_sort(results.begin(), results.end(), [](const PowerResult& a, const PowerResult& b) {
+        return std::tie(a.effect, a.noise, a.participants) < std::tie(b.effect, b.noise, b.participants);
+    });
     return results;
 }
 
@@ -223,6 +227,7 @@ files::Json power_json(const std::vector<PowerResult>& results) {
                         {"method", one.what.method},
                         {"label", one.what.label},
                         {one.effect == 0.0 ? "type_I_error" : "power", share_json(one.rejections)},
+                        {"tested", one.rejections.n > 0 ? files::Json(one.tested) : files::Json(nullptr)},
                         {"coverage", share_json(one.coverage)},
                         {"mean_estimate", files::number_or_null(one.mean_estimate)},
                         {"true_value", files::number_or_null(one.truth)},
@@ -252,6 +257,7 @@ ReportTable power_table(const std::vector<PowerResult>& results) {
                               number_cell(of_r.low),
                               number_cell(of_r.high),
                               whole(r.n),
+                              r.n > 0 ? whole(one.tested) : kNone,
                               number_cell(c.rate()),
                               number_cell(c.standard_error()),
                               number_cell(of_c.low),
@@ -280,6 +286,7 @@ files::Json power_dictionary() {
         {"rejected_low", text("lower limit of Wilson's 95 % interval of rejected")},
         {"rejected_high", text("upper limit of Wilson's 95 % interval of rejected")},
         {"rejected_n", text("studies; 0: no test")},
+        {"tested", text("studies in which the test could be computed; the others count as not rejected")},
         {"covered", text("share of the intervals that hold the true value")},
         {"covered_se", text("Monte Carlo standard error of covered")},
         {"covered_low", text("lower limit of Wilson's 95 % interval of covered")},

@@ -55,6 +55,7 @@ struct PowerResult {
     int participants = 0;
     Finding what;             // without numbers
     PowerShare rejections{};  // of the studies; a test that cannot be computed does not reject. n = 0: no test
+    std::int64_t tested = 0;  // studies in which the test could be computed
     PowerShare coverage{};    // of the studies with an interval. n = 0: none, or the true value is not known
     double mean_estimate = 0.0;
     double truth = 0.0;     // NaN: not known
@@ -65,7 +66,7 @@ struct PowerResult {
 //
 // True values: 0 for differences without an effect, which is exact. Else the mean estimate over all studies with the greatest
 // number of participants, whose error is smaller than that of one study by the root of their number. Log odds ratios have
-// none, since simulated people do not follow the mixed model.
+// none, since simulated people do not follow the mixed model. The results are sorted by effect, noise and participants.
 std::vector<PowerResult> summarise_power(const std::vector<PowerRow>& rows, std::int64_t studies, double alpha);
 
 files::Json power_json(const std::vector<PowerResult>& results);

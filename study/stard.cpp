@@ -35,7 +35,7 @@ std::string index_tests(const Protocol* protocol) {
     std::string out;
     for (const Condition& one : protocol->conditions) {
         out += (out.empty() ? "" : "; ") + one.id + ": " + name_of(one.modality) +
-               (one.scene.empty() ? "" : ", scene " + one.scene) + (one.device.empty() ? "" : ", " + one.device);
+               (one.scene.empty() ? "" : ", scene " + one.scene) + (one.device == kNone ? "" : ", " + one.device);
     }
     return "palpation under " + out + ". Settings of every trial are in the logs";
 }

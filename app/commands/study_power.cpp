@@ -39,6 +39,18 @@ std::string rate_text(const study::PowerShare& share) {
     return text;
 }
 
+// Zero of 500 that were tested is something else than zero because nothing could be tested.
+std::string rejected_text(const study::PowerResult& one) {
+    if (one.rejections.n == 0 || one.tested == one.rejections.n) return rate_text(one.rejections);
+    if (one.tested == 0) return "never computed";
+    return rate_text(one.rejections) + " (" + std::to_string(one.tested) + " computed)";
+}
+
+std::string coverage_text(const study::PowerResult& one, std::int64_t studies) {
+    const std::int64_t n = one.coverage.n;
+    return rate_text(one.coverage) + (n == 0 || n == studies ? "" : " (" + std::to_string(n) + " computed)");
+}
+
 std::string markdown(const study::Protocol& protocol, const PowerOptions& options, const PowerOutcome& outcome,
                      bool all) {
     std::string out =
@@ -50,7 +62,8 @@ std::string markdown(const study::Protocol& protocol, const PowerOptions& option
         "of `" +
         outcome.reference + "`; in choices the noise is exp(effect) times that of `" + outcome.reference +
         "`. Rejected: p < " + files::short_number(options.alpha) +
-        ", which without an effect is the type I error. Both rates are in per cent with their Monte Carlo standard "
+        ", which without an effect is the type I error; a test that cannot be computed in a study does not reject "
+        "there. Both rates are in per cent with their Monte Carlo standard "
         "error.\n\nSimulated people: " +
         simulated_people_text() + ".\n\n";
     if (!all)
@@ -67,8 +80,9 @@ std::string markdown(const study::Protocol& protocol, const PowerOptions& option
         out += "| " + files::short_number(one.effect) + " | " + files::short_number(one.noise) + " | " +
                std::to_string(one.participants) + " | " + one.what.quantity + " | " + one.what.a + " | " +
                (one.what.b.empty() ? "n/a" : one.what.b) + " | " + one.what.method +
-               (one.what.label.empty() ? "" : " (" + one.what.label + ")") + " | " + rate_text(one.rejections) + " | " +
-               rate_text(one.coverage) + " | " + number(one.mean_estimate) + " | " + number(one.truth) + " |\n";
+               (one.what.label.empty() ? "" : " (" + one.what.label + ")") + " | " + rejected_text(one) + " | " +
+               coverage_text(one, options.runs) + " | " + number(one.mean_estimate) + " | " + number(one.truth) +
+               " |\n";
     }
     return out;
 }

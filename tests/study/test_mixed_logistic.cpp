@@ -1,6 +1,7 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <random>
+#include <utility>
 
 #include "files/table.h"
 #include "study/mixed_logistic.h"
@@ -98,6 +99,30 @@ TEST_CASE("mixed model: the fit is the highest point, and sums of repeats count 
     twice.cells.insert(twice.cells.end(), data.cells.begin(), data.cells.end());
     for (MixedCell& cell : summed.cells) cell = {cell.condition, cell.participant, cell.nodule, 2 * cell.found, 2};
     CHECK(fit_mixed_logistic(twice).beta[1] == close_to(fit_mixed_logistic(summed).beta[1]).epsilon(1e-6));
+}
+
+TEST_CASE("mixed model: more nodules than people are fitted as well, with each spread at its own name") {
+    constexpr std::uint32_t kSeed = 6;
+    CAPTURE(kSeed);
+    const MixedData data = drawn_answers(kSeed, 9, 21, 0.8);
+    const MixedFit fit = fit_mixed_logistic(data);
+    REQUIRE(fit.status.empty());
+    REQUIRE(fit.covariance.size() == 4);
+    const auto at = [&](double d_p, double d_n) {
+        return mixed_log_likelihood(data, fit.beta, fit.s_participants + d_p, fit.s_nodules + d_n);
+    };
+    CHECK(at(0.0, 0.0) == close_to(fit.log_likelihood).epsilon(1e-10));
+    for (const double d : {-0.05, 0.05}) {
+        CHECK(at(d, 0.0) < at(0.0, 0.0));
+        CHECK(at(0.0, d) < at(0.0, 0.0));
+    }
+    // with people and nodules in each other's place
+    MixedData other{2, data.nodules, data.participants, data.cells};
+    for (MixedCell& cell : other.cells) std::swap(cell.participant, cell.nodule);
+    const MixedFit turned = fit_mixed_logistic(other);
+    CHECK(turned.s_participants == close_to(fit.s_nodules).epsilon(1e-6));
+    CHECK(turned.covariance[2][2] == close_to(fit.covariance[3][3]).epsilon(1e-6));
+    CHECK(turned.covariance[0][3] == close_to(fit.covariance[0][2]).epsilon(1e-6));
 }
 
 TEST_CASE("mixed model: people and nodules that do not differ leave the spreads at 0 and the plain log odds") {

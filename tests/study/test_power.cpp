@@ -46,11 +46,22 @@ TEST_CASE("power: rejections and coverage are counted by effect and number of pa
     CHECK(few.truth_se == close_to(0.1));
     CHECK(few.rejections.hits == 0);
     CHECK(few.rejections.n == 2);  // a test that cannot be computed does not reject
+    CHECK(few.tested == 1);
+    CHECK(null.tested == 2);
     CHECK(few.coverage.n == 1);
     CHECK(few.coverage.hits == 1);
     const PowerResult& many = of(results, 1.0, 9);
     CHECK(many.rejections.rate() == 1.0);
     CHECK(many.coverage.hits == 0);
+}
+
+TEST_CASE("power: results are sorted, whichever study has a finding first") {
+    const auto results = summarise_power(
+        {row(1.0, 5, 0.2, 0.1, 0.0, 0.2), row(0.0, 9, 0.2, 0.1, 0.0, 0.2), row(0.0, 5, 0.2, 0.1, 0.0, 0.2)}, 1, 0.05);
+    REQUIRE(results.size() == 3);
+    CHECK(results[0].participants == 5);
+    CHECK(results[1].participants == 9);
+    CHECK(results[2].effect == 1.0);
 }
 
 TEST_CASE("power: a label of one study stands by the row, whichever study comes first") {

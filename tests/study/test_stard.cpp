@@ -27,6 +27,7 @@ TEST_CASE("STARD checklist: the protocol answers what it states, and simulated p
     report.simulated = true;
     const std::string form = stard_checklist(report, &protocol);
     CHECK(contains(form, "the number of nodules was not told"));
+    CHECK(contains(form, "display ratio: pen, scene display-ratio.json; delay: pen"));  // no device is stated
     CHECK(contains(form, "NO PERSON TOOK PART"));
     CHECK(contains(form, "tests of at most 60 s"));
 }
