@@ -97,6 +97,16 @@ Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, Lev
                            "points that determine it (more levels, or another model)");
 }
 
+// A pen whose level never reaches the range would give the curve's lowest or highest force for ever.
+void check_level(LevelField level, const LevelRange& range, const std::string& file) {
+    const std::string found =
+        "levels from " + files::short_number(range.lowest) + " to " + files::short_number(range.highest);
+    if (level == LevelField::pressure && range.highest > 1.0)
+        throw files::bad_input(file, "level", found, "from 0 to 1, as `pressure` has it (counts are `pressure_raw`)");
+    if (level == LevelField::pressure_raw && range.highest <= 1.0)
+        throw files::bad_input(file, "level", found, "counts, as `pressure_raw` has it (from 0 to 1 is `pressure`)");
+}
+
 }  // namespace
 
 Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& options) {
@@ -116,6 +126,7 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
     profile.curve = fitted_curve(out.points, options, range, rows.file, out.chosen);
     profile.device = rows.device;
     profile.level = options.level.value_or(range.highest > 1.0 ? LevelField::pressure_raw : LevelField::pressure);
+    check_level(profile.level, range, rows.file);
     if (profile.level == LevelField::contact_area) profile.full_contact_area_px2 = options.full_contact_area_px2;
     profile.level_lowest = range.lowest;
     profile.level_highest = range.highest;

@@ -37,6 +37,12 @@ Material read_large_material(files::JsonReader& json, Law law) {
                   "at most " + files::short_number(large.mu_Pa / (3.0 * (0.5 - kMostPoisson))) +
                       " with this mu_Pa (1e4 times mu_Pa stands for an incompressible tissue)");
     }
+    // bulk moduli far below that leave nothing of 1 + Poisson's ratio but round-off
+    constexpr double kLeastShare = 1e-6;
+    if (large.kappa_Pa < kLeastShare * large.mu_Pa) {
+        json.fail("kappa_Pa", files::number_text(large.kappa_Pa),
+                  "at least " + files::short_number(kLeastShare * large.mu_Pa) + " with this mu_Pa");
+    }
     return material;
 }
 

@@ -57,7 +57,8 @@ CaseIndenter read_indenter(files::JsonReader json, const CaseMesh& mesh) {
     CaseIndenter out;
     out.indenter.shape =
         json.choice("shape", {"sphere", "cylinder"}) == 0 ? IndenterShape::sphere : IndenterShape::cylinder;
-    out.indenter.radius_m = 1e-3 * json.number("radius_mm", files::kPositive);
+    constexpr files::Bounds kRadius_mm{1e-3, 1e6};
+    out.indenter.radius_m = 1e-3 * json.number("radius_mm", kRadius_mm);
     if (json.has("length_mm")) {
         if (out.indenter.shape == IndenterShape::sphere)
             json.fail("length_mm", "a length of a sphere", "it for a cylinder only");

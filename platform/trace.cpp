@@ -96,6 +96,10 @@ void read_trial(files::JsonReader& json, TraceInfo& info) {
     constexpr files::Bounds kOffset_mm{0.0, 1000.0};
     if (json.has("mode")) info.mode = json.choice("mode", {"practice", "test"}) == 0 ? "practice" : "test";
     info.finger_offset_mm = json.number("finger_offset_mm", kOffset_mm, 0.0);
+    for (files::JsonReader& part : json.objects("parts")) {
+        info.parts.push_back({part.text("file"), part.text("sha256")});
+        part.finish();
+    }
     auto mapping = json.optional_object("mapping");
     if (!mapping) return;
     TissueTurn turn;
@@ -109,7 +113,7 @@ void read_trial(files::JsonReader& json, TraceInfo& info) {
 TraceInfo read_info(const std::filesystem::path& path) {
     const files::Json root = files::read_json(path);
     files::JsonReader json(root, path.string());
-    json.only({"screen_px", "screen_mm", "device", "device_loops", "mode", "finger_offset_mm", "mapping"});
+    json.only({"screen_px", "screen_mm", "device", "device_loops", "mode", "finger_offset_mm", "mapping", "parts"});
     constexpr files::Bounds kScreen{1.0, 16384.0};
     TraceInfo info;
     const auto size_px = json.numbers("screen_px", 2, kScreen);
@@ -136,6 +140,7 @@ files::Json info_json(const TraceInfo& info) {
     if (!info.mode.empty()) json["mode"] = info.mode;
     if (info.finger_offset_mm != 0.0) json["finger_offset_mm"] = info.finger_offset_mm;
     if (info.turn) json["mapping"] = {{"rotate_deg", info.turn->rotate_deg}, {"flip", info.turn->flip}};
+    for (const TracedPart& part : info.parts) json["parts"].push_back({{"file", part.file}, {"sha256", part.sha256}});
     return json;
 }
 

@@ -19,6 +19,12 @@ struct TissueTurn {
     bool flip = false;
 };
 
+// A part that was pressed, as its file was then: people change parts between presses.
+struct TracedPart {
+    std::string file;    // its name, without folder
+    std::string sha256;  // of its bytes
+};
+
 struct TraceInfo {
     double screen_width_px = 0.0;
     double screen_height_px = 0.0;
@@ -31,6 +37,7 @@ struct TraceInfo {
     std::string mode{};             // practice or test; empty: not recorded
     double finger_offset_mm = 0.0;  // by which positions of fingers were moved up
     std::optional<TissueTurn> turn{};
+    std::vector<TracedPart> parts{};  // of a scene of parts
 };
 
 struct Trace {

@@ -36,6 +36,7 @@ std::filesystem::path map_folder(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
 }
 
+const PartOptions* part_options(const TissueOptions& options) { return std::get_if<PartOptions>(&options); }
 PartOptions* part_options(TissueOptions& options) { return std::get_if<PartOptions>(&options); }
 
 void leave_out_nodules(TissueOptions& options) {

@@ -34,6 +34,7 @@ inline bool is_curve(const TissueOptions& options) {
     return std::holds_alternative<ForceCurveOptions>(options) || std::holds_alternative<SoftBlockOptions>(options);
 }
 
+const PartOptions* part_options(const TissueOptions& options);
 PartOptions* part_options(TissueOptions& options);  // nullptr for a tissue that is no part
 void leave_out_nodules(TissueOptions& options);     // sets `nodules` to false
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "files/text.h"
 #include "scene/advance.h"
 #include "scene/plan.h"
 
@@ -53,6 +54,21 @@ void turn_as_recorded(const platform::TraceInfo& info, scene::Scene& scene) {
     if (!info.turn) return;
     scene.mapping.rotate_deg = info.turn->rotate_deg;
     scene.mapping.flip = info.turn->flip;
+}
+
+std::string other_parts(const platform::TraceInfo& info, const scene::Scene& scene) {
+    const std::vector<platform::TracedPart> now = traced_parts(scene);
+    if (info.parts.empty()) return "";  // an older trace, or one of other tissue
+    std::string out;
+    for (std::size_t i = 0; i < info.parts.size(); ++i) {
+        if (i < now.size() && now[i].sha256 == info.parts[i].sha256) continue;
+        out +=
+            (out.empty() ? "it was recorded on " : "; and on ") + files::shown(info.parts[i].file) +
+            ", the scene has " +
+            (i < now.size() ? files::shown(now[i].file) + (now[i].file == info.parts[i].file ? ", changed since" : "")
+                            : "no such part");
+    }
+    return out;
 }
 
 void begin_replay(SessionFiles files, const platform::TraceInfo& info, std::optional<TrialMode> mode,

@@ -3,6 +3,7 @@
 // that its log is the log of the recorded trial.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "files/json.h"
@@ -46,6 +47,9 @@ TrialMode mode_of(const platform::TraceInfo& info);
 
 // Turns the tissue as it was when the trace was recorded, if the trace states it.
 void turn_as_recorded(const platform::TraceInfo& info, scene::Scene& scene);
+
+// Empty, or which parts were other ones when the trace was recorded: its forces and depths are not those of the scene.
+std::string other_parts(const platform::TraceInfo& info, const scene::Scene& scene);
 
 // Begins the recorded trial on the session's scene: with the tissue turned as it was, with the recorded finger offset,
 // and in the recorded mode unless `mode` names another one. Throws as begin_trial().

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "files/clock.h"
+#include "files/sha256.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "scene/tissue.h"
 #include "session/log_rows.h"
 
 namespace palpa::session {
@@ -166,6 +168,7 @@ platform::TraceInfo with_trial(platform::TraceInfo info, const Session& session)
     info.mode = name_of(session.trial.mode);
     info.finger_offset_mm = session.finger_offset_mm;
     info.turn = platform::TissueTurn{session.scene.mapping.rotate_deg, session.scene.mapping.flip};
+    info.parts = traced_parts(session.scene);
     return info;
 }
 
@@ -200,6 +203,15 @@ void keep_last_place(const scene::View& before, const scene::View& now, Trial& t
 }
 
 }  // namespace
+
+std::vector<platform::TracedPart> traced_parts(const scene::Scene& scene) {
+    std::vector<platform::TracedPart> out;
+    if (const scene::PartOptions* parts = scene::part_options(scene.tissue)) {
+        for (const std::filesystem::path& design : parts->designs)
+            out.push_back({design.filename().string(), files::sha256_of_file(design)});
+    }
+    return out;
+}
 
 scene::ScreenArea screen_of(const platform::TraceInfo& info) {
     scene::ScreenArea area{info.screen_width_px, info.screen_height_px};

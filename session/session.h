@@ -53,6 +53,9 @@ struct Session {
 // Returns a trace's screen as the area of the tissue; it holds until a sample of action resize.
 scene::ScreenArea screen_of(const platform::TraceInfo& info);
 
+// The files of a scene's parts as they are now; none for other tissue.
+std::vector<platform::TracedPart> traced_parts(const scene::Scene& scene);
+
 // Puts another tissue into the session: the scene, its plan and a state at rest on them change together, since no frame
 // and no sample may see a mixture of old and new. No other function changes session.scene or session.plan. The files of
 // the last trial must be closed; no trial has begun afterwards.

@@ -16,6 +16,7 @@ namespace {
 constexpr double kLeastContact_N = 1e-3;
 constexpr double kMostForce_N = 1e3;
 constexpr int kFewestTicks = 20;
+constexpr double kLeastTravel_m = 1e-4;  // in contact: a depth that stays tells no stiffness
 constexpr int kMostRounds = 12;
 // ln of the modulus factor, friction share, zero in mm, and the share of a step that a lagging drive still lacks after the time
 // between two rows: the forces are straight lines over it near 0, unlike over the lag itself
@@ -112,6 +113,13 @@ std::vector<RecordedTick> used_ticks(const std::vector<RecordedTick>& ticks, std
     if (static_cast<int>(in_contact.size()) < kFewestTicks)
         throw std::runtime_error("the presses hold " + std::to_string(in_contact.size()) +
                                  " rows in contact, expected at least " + std::to_string(kFewestTicks));
+    const auto [least, deepest] =
+        std::minmax_element(in_contact.begin(), in_contact.end(),
+                            [](const RecordedTick& a, const RecordedTick& b) { return a.depth_m < b.depth_m; });
+    if (deepest->depth_m - least->depth_m < kLeastTravel_m)
+        throw std::runtime_error("the presses stay at a depth of " + files::short_number(1e3 * least->depth_m) +
+                                 " mm, expected presses that go in and out by " +
+                                 files::short_number(1e3 * kLeastTravel_m) + " mm at least");
     const std::size_t every = (in_contact.size() + most - 1) / most;
     std::vector<RecordedTick> out{ticks.front()};
     for (std::size_t i = 0; i < in_contact.size(); i += every) out.push_back(in_contact[i]);

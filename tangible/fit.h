@@ -40,7 +40,7 @@ struct FitResult {
 // without cables the friction stays 0. The lag is fitted only if that is asked for, and else the device's own stays: a sensor
 // that is late looks like a lag, and where the actuators hardly move none can be seen. One of less than three standard
 // errors, or far below the time between two rows, is taken for none. Throws std::runtime_error
-// where the presses do not tell (fewer than 20 ticks in contact, or no equilibrium at most of them).
+// where the presses do not tell (fewer than 20 ticks in contact, a depth that stays, or no equilibrium at most of them).
 struct FitOptions {
     bool lag = false;
     std::size_t most = 60;

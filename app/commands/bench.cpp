@@ -8,8 +8,10 @@
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
+#include "files/input_error.h"
 #include "files/progress_line.h"
 #include "files/regular_file.h"
+#include "files/text.h"
 #include "session/plan_in_progress.h"
 #include "session/raster_trace.h"
 
@@ -26,6 +28,12 @@ struct TraceOptions {
 void write_raster(const TraceOptions& options) {
     const scene::Scene scene = load_scene(options.scene);
     files::check_output(options.output, inputs_of(scene));
+    constexpr double kMostSamples = 2e7;  // some 2 GB
+    if (options.raster.rate_Hz * options.raster.seconds > kMostSamples)
+        throw files::bad_input("--seconds", "",
+                               files::short_number(options.raster.seconds) + " s at " +
+                                   files::short_number(options.raster.rate_Hz) + " Hz",
+                               "at most 2e7 samples, some 2 GB");
     session::RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
     const scene::Plan plan = session::make_plan_here(scene);

@@ -37,7 +37,9 @@ std::map<std::string, Session> read_sessions(const std::string& file) {
         for (const std::size_t column : names) name += (name.empty() ? "" : " ") + std::string(table.field(column));
         Session& session = sessions[name];
         session.level.push_back(table.finite_number(level));
+        if (!(session.level.back() >= 0.0 && session.level.back() <= 1.0)) table.fail(level, "a pressure from 0 to 1");
         session.force_N.push_back(table.finite_number(force_N));
+        if (session.force_N.back() < 0.0) table.fail(force_N, "a force of 0 or more");
         session.line.push_back(table.line());
     }
     return sessions;

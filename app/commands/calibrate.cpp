@@ -139,7 +139,8 @@ void add_fit(CLI::App& calibrate) {
         ->add_option("DATA", arguments->data,
                      "CSV with level (or pressure_norm) and force_N or force_gf; optional: time_s, repeat, phase")
         ->required();
-    command->add_option("-o,--output", arguments->output, "new PROFILE.json")->required();
+    command->add_option("-o,--output", arguments->output, "PROFILE.json to write; replaces a file of that name")
+        ->required();
     command
         ->add_option("--model", arguments->model,
                      "curve to fit; auto chooses the model that best predicts points left out of the fit")

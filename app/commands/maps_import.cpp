@@ -211,7 +211,28 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
                 map.noise_N ? (files::short_number(*map.noise_N) + " N").c_str() : "not known (too few neighbours)");
 }
 
-void import_map(const ImportArguments& a) {
+constexpr const char* kTableOptions = "Tables";
+constexpr const char* kSlidingOptions = "Tables of sliding";
+constexpr const char* kArrayOptions = "Arrays";
+
+// An option that changes nothing for this form of recording was meant for another one.
+void check_used(const CLI::App& command, stiffnessmaps::RecordingForm form) {
+    const bool arrays = form == stiffnessmaps::RecordingForm::matrices;
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string& group = option->get_group();
+        const bool used = group == kArrayOptions     ? arrays
+                          : group == kTableOptions   ? !arrays
+                          : group == kSlidingOptions ? form == stiffnessmaps::RecordingForm::sliding
+                                                     : true;
+        if (option->count() == 0 || used) continue;
+        throw files::bad_input(option->get_name(), "", std::string("a recording of the form ") + name_of(form),
+                               group == kArrayOptions   ? "arrays, for which this option is"
+                               : group == kTableOptions ? "a table, for which this option is"
+                                                        : "a table of sliding, for which this option is");
+    }
+}
+
+void import_map(const CLI::App& command, const ImportArguments& a) {
     stiffnessmaps::ImportOptions options = options_of(a);
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
     if (a.output.empty() && !a.explain)
@@ -223,6 +244,7 @@ void import_map(const ImportArguments& a) {
     options.progress = [&line](const char* what, double done) { line->show(what, done > 0.0 ? done : std::nan("")); };
     const stiffnessmaps::Map map = stiffnessmaps::import_recording({a.files.begin(), a.files.end()}, options, report);
     line.reset();
+    check_used(command, report.form);
     if (!a.output.empty()) stiffnessmaps::write_map(map, a.output);
     for (const std::string& note : report.notes) std::fprintf(stderr, "palpa: %s\n", note.c_str());
     if (a.json) {
@@ -238,23 +260,20 @@ void import_map(const ImportArguments& a) {
 void add_table_options(CLI::App& command, ImportArguments& a) {
     const auto number = [&](const char* name, std::optional<double>& value, const char* help, double lowest,
                             double highest) {
-        command.add_option(name, value, help)->check(CLI::Range(lowest, highest))->group("Tables");
+        command.add_option(name, value, help)->check(CLI::Range(lowest, highest))->group(kTableOptions);
     };
     const auto text = [&](const char* name, std::string& value, const char* help) {
-        return command.add_option(name, value, help)->group("Tables");
+        return command.add_option(name, value, help)->group(kTableOptions);
     };
     command
         .add_option("--column", a.columns,
                     "ROLE=NAME, as often as needed; roles: t, point, x, y, z, depth, depth_cmd, fn, fx, fy, "
                     "fz, n_x, n_y, n_z")
         ->allow_extra_args(false)
-        ->group("Tables");
+        ->group(kTableOptions);
     text("--length-unit", a.length_unit, "unit of x, y, z: mm, m or um (default: from the column's name, else mm)")
         ->check(one_of({"mm", "m", "um"}));
     text("--depth-unit", a.depth_unit, "unit of depths: mm, m or um")->check(one_of({"mm", "m", "um"}));
-    text("--force-unit", a.force_unit, "unit of forces: N or mN (default: from the column's name, else N)")
-        ->check(one_of({"N", "mN"}));
-    command.add_flag("--negate-force", a.negate_force, "reverse the sign of the forces")->group("Tables");
     text("--region-mm", a.region, "X0,X1,Y0,Y1: import only the places in this region");
     text("--tilt", a.tilt, "tilt of the surface: remove (default) or keep")->check(one_of({"remove", "keep"}));
     number("--outliers", a.outliers,
@@ -264,49 +283,54 @@ void add_table_options(CLI::App& command, ImportArguments& a) {
         ->check(one_of({"on-grid", "plane", "inverse-distance", "median"}));
     number("--pitch-mm", a.pitch_mm, "pitch of the map where the places do not lie on a grid", 0.01, 1000.0);
     number("--radius-mm", a.radius_mm, "radius around a cell from which it then takes samples", 0.01, 1000.0);
-    command.add_option("--layers", a.layers, "number of depths of the map")->check(CLI::Range(1, 200))->group("Tables");
+    command.add_option("--layers", a.layers, "number of depths of the map")
+        ->check(CLI::Range(1, 200))
+        ->group(kTableOptions);
     text("--contact", a.contact, "start of contact: first-row, threshold, or given (depths count from the surface)")
         ->check(one_of({"first-row", "threshold", "given"}));
     number("--contact-force-N", a.contact_force_N, "threshold of the force at contact", 0.0, 100.0);
-    number("--surface-z-mm", a.surface_z_mm, "sliding: height of a flat surface, used instead of an estimated one",
-           -1e5, 1e5);
-    number("--surface-node-mm", a.surface_node_mm, "sliding: spacing of the nodes of the estimated surface", 0.1,
-           1000.0);
-    text("--at-depth-mm", a.at_depths, "sliding at constant depth: the depth of each file");
+    const auto sliding = [](CLI::Option* option) { option->group(kSlidingOptions); };
+    sliding(
+        command
+            .add_option("--surface-z-mm", a.surface_z_mm, "height of a flat surface, used instead of an estimated one")
+            ->check(CLI::Range(-1e5, 1e5)));
+    sliding(command.add_option("--surface-node-mm", a.surface_node_mm, "spacing of the nodes of the estimated surface")
+                ->check(CLI::Range(0.1, 1000.0)));
+    sliding(command.add_option("--at-depth-mm", a.at_depths, "sliding at constant depth: the depth of each file"));
 }
 
 void add_array_options(CLI::App& command, ImportArguments& a) {
     const auto text = [&](const char* name, std::string& value, const char* help) {
-        return command.add_option(name, value, help)->group("Arrays");
+        return command.add_option(name, value, help)->group(kArrayOptions);
     };
     text("--spacing-mm", a.spacing, "DX,DY: distance between neighbouring numbers");
     text("--origin-mm", a.origin, "X,Y: place of the first number (default 0,0)");
     text("--quantity", a.quantity, "quantity of the numbers: force (N, default), stiffness (N/mm) or young (kPa)")
         ->check(one_of({"force", "stiffness", "young"}));
     command.add_option("--scale", a.scale, "value in N, N/mm or kPa of one unit of the file; required for images")
-        ->group("Arrays");
+        ->group(kArrayOptions);
     command.add_option("--offset", a.offset, "number that is subtracted from the file's numbers before scaling")
-        ->group("Arrays");
-    command.add_option("--missing", a.missing, "number that stands for not measured")->group("Arrays");
+        ->group(kArrayOptions);
+    command.add_option("--missing", a.missing, "number that stands for not measured")->group(kArrayOptions);
     text("--axes", a.axes, "order of three-dimensional arrays (default dyx: depth, y, x)")
         ->check(one_of({"dyx", "dxy", "ydx", "yxd", "xdy", "xyd"}));
     text("--dataset", a.dataset, "name of the array in a MATLAB or HDF5 file that holds several");
     command
         .add_option("--tangential-x", a.tangential_x,
                     "files of the force that opposes motion along +x (default: by their names)")
-        ->group("Arrays");
+        ->group(kArrayOptions);
     command
         .add_option("--tangential-y", a.tangential_y,
                     "files of the force that opposes motion along +y (default: by their names)")
-        ->group("Arrays");
+        ->group(kArrayOptions);
     command.add_option("--poisson", a.poisson, "Poisson's ratio of the tissue, for Young's moduli (default 0.5)")
         ->check(CLI::Range(0.0, 0.5))
-        ->group("Arrays");
+        ->group(kArrayOptions);
     command
         .add_option("--cylinder-length-mm", a.cylinder_length_mm,
                     "length of the cylinder, for Young's moduli (default 20)")
         ->check(CLI::Range(0.1, 1e4))
-        ->group("Arrays");
+        ->group(kArrayOptions);
 }
 
 }  // namespace
@@ -338,13 +362,17 @@ void add_maps_import(CLI::App& maps) {
                      "radius of the tool's tip (default 3, an assumption, since recordings do not state it)")
         ->check(CLI::Range(1e-3, 1e3));
     command->add_option("--name", a->name, "name of the map (default: the file's name)");
+    command
+        ->add_option("--force-unit", a->force_unit, "unit of forces: N or mN (default: from the column's name, else N)")
+        ->check(one_of({"N", "mN"}));
+    command->add_flag("--negate-force", a->negate_force, "reverse the sign of the forces");
     command->add_option("--licence", a->licence, "licence of the recording, stored in the map's source");
     add_table_options(*command, *a);
     add_array_options(*command, *a);
     command->add_flag("--explain", a->explain, "also print each choice, its reason and the option that overrides it");
     command->add_flag("--json", a->json,
                       "print one JSON object: the keys of `maps info`, and `import` with the import's figures");
-    command->callback([a] { import_map(*a); });
+    command->callback([a, command] { import_map(*command, *a); });
 }
 
 }  // namespace palpa::app

@@ -60,7 +60,7 @@ void add_part_edit(CLI::App& part) {
             R"(operation as JSON, as often as needed: '{"sculpt": {"points_mm": [[1, 2, 3]], "radius_mm": 1}}')")
         ->allow_extra_args(false);
     edit->add_option("--undo", options->undo, "drop so many operations first")->check(CLI::Range(0, 1'000'000));
-    edit->add_option("-o,--output", options->output, "new part JSON")->required();
+    edit->add_option("-o,--output", options->output, "part JSON to write; replaces a file of that name")->required();
     edit->add_flag("--json", options->json, "print one JSON object on standard output");
     edit->callback([options] { edit_part(*options); });
 }

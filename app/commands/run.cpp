@@ -110,6 +110,8 @@ void run_headless(const RunOptions& options) {
     }
     auto plan = std::make_shared<const scene::Plan>(session::make_plan_here(scene));
     const platform::Trace trace = platform::read_trace(options.trace);
+    const std::string other = session::other_parts(trace.info, scene);
+    if (!other.empty()) std::fprintf(stderr, "palpa: warning: %s: %s\n", options.trace.c_str(), other.c_str());
     session::Session session;
     session::change_tissue(std::move(scene), std::move(plan), {}, session);
     session::begin_replay({options.log, options.participant, ""}, trace.info, asked_mode(options), session);

@@ -3,10 +3,12 @@
 #include "desk/serve.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 
 #include "app/assets.h"
 #include "app/commands/command_line.h"
+#include "files/input_error.h"
 #include "files/regular_file.h"
 
 namespace palpa::app {
@@ -28,7 +30,12 @@ void start(const ServeArguments& arguments) {
     options.sessions.lasts_s = 3600.0 * arguments.hours;
     options.uploads.upload_bytes = static_cast<std::uint64_t>(1e6 * arguments.upload_MB);
     options.uploads.total_bytes = static_cast<std::uint64_t>(1e6 * arguments.total_MB);
-    if (!options.collect.empty()) files::check_output_folder(options.collect);
+    if (!options.collect.empty()) {
+        files::check_output_folder(options.collect);
+        if (std::filesystem::exists(std::filesystem::path(options.collect) / "study.json"))
+            throw files::bad_input(options.collect, "", "the folder of a study (study.json)",
+                                   "a folder of its own, from which `palpa study import` adds the logs to the study");
+    }
     desk::serve(options);
 }
 

@@ -78,6 +78,21 @@ std::function<double(double)> law_of(double wanted_N_per_m, CharacterisedTissue 
     };
 }
 
+// Above the limit the force holds, and a line through it is no stiffness that the arm renders.
+void check_force(const CharacteriseOptions& options, const CharacterisedTissue& tissue,
+                 const devices::ArmDevice& device) {
+    const double limit_N = devices::limits_of(&device, nullptr, options.force_limit_N).force_N;
+    for (const double stiffness : options.stiffness_N_per_mm) {
+        if (law_of(1e3 * stiffness, tissue)(1e-3 * options.depth_mm) < 0.999 * limit_N) continue;
+        throw files::bad_input("--stiffness-N-per-mm", "",
+                               files::short_number(stiffness) + " at a depth of " +
+                                   files::short_number(options.depth_mm) + " mm, where the force limit of " +
+                                   files::short_number(limit_N) + " N holds the force",
+                               "a softer tissue, a greater --force-limit-N, or a --depth-mm below " +
+                                   files::short_number(limit_N / stiffness));
+    }
+}
+
 std::optional<tactile::ArmCompensation> compensation_for(const CharacteriseOptions& options,
                                                          const devices::ArmDevice& device, files::Json& json) {
     if (options.compensation == "off") {
@@ -189,6 +204,7 @@ void characterise(const CharacteriseOptions& options) {
     const devices::ArmDevice device =
         rig_device(options.rig, has_arm ? scene.tactile->arm->device : std::filesystem::path());
     const CharacterisedTissue tissue = tissue_of(options, scene);
+    check_force(options, tissue, device);
     files::Json json{{"scene", options.scene}, {"simulated", options.rig.simulate}};
     if (options.rig.simulate) json["seed"] = options.rig.seed;
     const auto compensation = compensation_for(options, device, json);

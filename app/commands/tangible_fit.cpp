@@ -94,7 +94,8 @@ void add_tangible_fit(CLI::App& tangible) {
             "PRESSES", arguments->presses,
             "table with time_s, depth_mm, force_N and each actuator's NAME_N or NAME_Pa, as characterise -o writes")
         ->required();
-    command->add_option("-o,--output", arguments->output, "new device file NEW.json")->required();
+    command->add_option("-o,--output", arguments->output, "device file NEW.json to write; replaces a file of that name")
+        ->required();
     command->add_flag(
         "--lag", arguments->lag,
         "also how far the drives lag: from a press of a tissue that stiffens, with a sensor that is not late");

@@ -127,9 +127,13 @@ bool append_edit(std::size_t index, const OperationFor& operation_for, platform:
     fs::path& design = scene::part_options(scene.tissue)->designs.at(index);
     parts::EditedPart edited = parts::open_part(design);
     const files::Json operation = operation_for(edited.json);
+    std::int64_t changed = 0;
     try {
-        parts::edit(operation, edited);
+        changed = parts::edit(operation, edited);
     } catch (const files::InputError&) {
+        // told below
+    }
+    if (changed == 0) {
         app.notices.note = words::kNothingChanged;
         return false;
     }

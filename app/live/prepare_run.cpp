@@ -39,10 +39,13 @@ void load(const RunOptions& options, App& app) {
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
-    if (app.trace)
+    if (app.trace) {
         session::turn_as_recorded(app.trace->info, scene);
-    else
+        const std::string other = session::other_parts(app.trace->info, scene);
+        if (!other.empty()) std::fprintf(stderr, "palpa: warning: %s: %s\n", options.trace.c_str(), other.c_str());
+    } else {
         draw_turn(scene);
+    }
     if (takes_seconds(scene.tissue)) {
         app.unprepared = std::move(scene);
         return;

@@ -236,7 +236,9 @@ bool work_at_stake(const App& app) {
     const session::Trial& trial = app.session.trial;
     if (app.trace) return false;
     if (study != nullptr && !palpates(app.doing)) {
-        const bool half_a_pair = at<step::Question>(*study) || (at<step::Present>(*study) && study->interval > 0);
+        // a surface that is to be repeated, or waits for its device, is the second one
+        const bool second = (at<step::Present>(*study) || at<step::Device>(*study)) && study->interval > 0;
+        const bool half_a_pair = at<step::Question>(*study) || second;
         if (half_a_pair) return true;
         return app.view.study.step == study->entered && answers_at_stake(app.view.study);
     }

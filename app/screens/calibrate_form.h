@@ -17,4 +17,7 @@ void step_calibrate(const std::vector<platform::Sample>& samples, CalibrateForm&
 // Writes what was recorded to the disk and closes the sensor. A later session of the same name can continue it.
 void stop_recording(CalibrateForm& form);
 
+// Fits a profile to the points and closes the session. form.problem says why there is none; then the session goes on.
+void keep_profile(CalibrateForm& form);
+
 }  // namespace palpa::app

@@ -69,29 +69,22 @@ std::string today() {
     return text;
 }
 
-void keep_profile(CalibrateForm& form) {
-    attempt(form, [&] {
-        calibration::close_recording(*form.recording);
-        calibration::CalibrateOptions options;
-        options.range = form.recording->arguments.options.range;
-        calibration::CalibrationRows rows =
-            calibration::read_points(calibration::points_file(form.recording->arguments), {});
-        calibration::Calibration calibration = calibration::calibrate(rows, options);
-        calibration.profile.device.pen = form.name;
-        calibration.profile.device.date = today();
-        const std::filesystem::path file = free_profile(form);
-        const files::Json quality{{"median_relative_error", calibration.median_relative_error},
-                                  {"n_points", calibration.n_points},
-                                  {"warnings", calibration.warnings}};
-        calibration::write_profile(calibration.profile, quality, file);
-        form.guide.note = words::filled(words::kSavedAs, {file.string()});
-        for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
-        form.recording.reset();
-    });
-}
-
 double share_of(const calibration::RecordOptions& options, double level) {
     return (level - options.range.lowest) / (options.range.highest - options.range.lowest);
+}
+
+double residual_percent(const calibration::CapturedPoint& point, const calibration::Curve& curve) {
+    const double curve_N = calibration::value_N(curve, point.level);
+    return 100.0 * (point.force_N - curve_N) / std::max(curve_N, 1e-6);
+}
+
+// The axis that shows all residuals, or 100 %: a mistyped force is many times the curve's.
+double residual_axis_percent(const calibration::RecordSession& session, const Guide& guide) {
+    double most = 0.0;
+    for (const calibration::CapturedPoint& point : session.points) {
+        if (guide.fit) most = std::max(most, std::abs(residual_percent(point, guide.fit->profile.curve)));
+    }
+    return most <= 20.0 ? 20.0 : most <= 50.0 ? 50.0 : 100.0;
 }
 
 // Draws points and curve above, and the points' residuals below. The band to press next is tinted.
@@ -113,18 +106,17 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
         draw.AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, low.y), kForceTints[1]);
     }
     draw_plot_axes(curve, {words::kForceOverPressure, words::kPressureAxis, words::kForceAxis}, gui.mm(), draw);
-    const Plot rest{data_area({area.x0, split, area.x1, area.y1 - gui.mm()}, gui.mm()), 0.0, kFull_percent, -20.0,
-                    20.0};
+    const double most_percent = residual_axis_percent(session, guide);
+    const Plot rest{data_area({area.x0, split, area.x1, area.y1 - gui.mm()}, gui.mm()), 0.0, kFull_percent,
+                    -most_percent, most_percent};
     draw_plot_axes(rest, {words::kResiduals, words::kPressureAxis, words::kPercentAxis}, gui.mm(), draw);
     draw.AddLine(rest.at(0.0, 0.0), rest.at(kFull_percent, 0.0), kPale);
     const float dot_px = 0.6f * gui.mm();
     for (const calibration::CapturedPoint& point : session.points) {
         const double x = kFull_percent * share_of(options, point.level);
         draw.AddCircleFilled(curve.at(x, point.force_N), dot_px, kInk);
-        if (!guide.fit) continue;
-        const double curve_N = calibration::value_N(guide.fit->profile.curve, point.level);
-        draw.AddCircleFilled(rest.at(x, kFull_percent * (point.force_N - curve_N) / std::max(curve_N, 1e-6)), dot_px,
-                             kInk);
+        if (guide.fit)
+            draw.AddCircleFilled(rest.at(x, residual_percent(point, guide.fit->profile.curve)), dot_px, kInk);
     }
     if (guide.fit) {
         constexpr int kSteps = 100;
@@ -132,7 +124,9 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
             const double level = options.range.lowest + (options.range.highest - options.range.lowest) * i / kSteps;
             return curve.at(kFull_percent * i / kSteps, calibration::value_N(guide.fit->profile.curve, level));
         };
+        draw.PushClipRect(ImVec2(curve.area.x0, curve.area.y0), ImVec2(curve.area.x1, curve.area.y1), true);
         for (int i = 0; i < kSteps; ++i) draw.AddLine(at(i), at(i + 1), kLag, 0.4f * gui.mm());
+        draw.PopClipRect();
     }
     if (!session.levels.empty()) {
         cross(draw, curve.at(kFull_percent * share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(),
@@ -185,6 +179,27 @@ void form_lines(Gui& gui, CalibrateForm& form) {
 }
 
 }  // namespace
+
+void keep_profile(CalibrateForm& form) {
+    attempt(form, [&] {
+        calibration::close_recording(*form.recording);
+        calibration::CalibrateOptions options;
+        options.range = form.recording->arguments.options.range;
+        calibration::CalibrationRows rows =
+            calibration::read_points(calibration::points_file(form.recording->arguments), {});
+        calibration::Calibration calibration = calibration::calibrate(rows, options);
+        calibration.profile.device.pen = form.name;
+        calibration.profile.device.date = today();
+        const std::filesystem::path file = free_profile(form);
+        const files::Json quality{{"median_relative_error", calibration.median_relative_error},
+                                  {"n_points", calibration.n_points},
+                                  {"warnings", calibration.warnings}};
+        calibration::write_profile(calibration.profile, quality, file);
+        form.guide.note = words::filled(words::kSavedAs, {file.string()});
+        for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
+        form.recording.reset();
+    });
+}
 
 const char* number_to_type(const CalibrateForm& form) {
     const bool counts = form.counts_per_N >= 1e-9 && form.counts_per_N <= 1e12;  // as on the command line

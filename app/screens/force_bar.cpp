@@ -68,8 +68,9 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
         const float top = y_of(bounds_N[zone + 1]);
         const float bottom = y_of(bounds_N[zone]);
         draw.AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width_px, bottom), kForceTints[zone]);
-        if (bottom - top < 1.1f * text_px) continue;
+        if (bottom - top < 0.75f * text_px) continue;
         const bool room =
+            bottom - top >= 1.1f * text_px &&
             width_px + 1.5f * mm + ImGui::CalcTextSize(kZones[zone]).x <= ImGui::GetContentRegionAvail().x;
         const float name_px = room ? text_px : 0.75f * text_px;
         // below the limit's own text, where both would stand at one height

@@ -158,8 +158,7 @@ void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
         ImGui::TextUnformatted(name_of(stage.id));
         hint_for_last(stage.fidelity.c_str());
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(stage.error.c_str());
-        hint_for_last(stage.error.c_str());
+        wrapped_text(stage.error);
         ImGui::TableNextColumn();
         ImGui::Text("%.2f", 1e-3 * meter.quantile_ns(0.5));
         ImGui::TableNextColumn();

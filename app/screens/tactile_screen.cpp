@@ -56,7 +56,7 @@ void draw_force_lines(const TactileShown& tactile, float column_px) {
 void draw_pin_lines(const TactileMoment& moment, float column_px) {
     if (moment.rows <= 0) return;
     value_line(words::kMismatch, in_unit(moment.mismatch_m, 1e3, 3, "mm"), column_px);
-    value_line("", in_unit(moment.mismatch_s, 1e3, 0, "ms"), column_px);
+    value_line(words::kPinsBehind, in_unit(moment.mismatch_s, 1e3, 0, "ms"), column_px);
     const std::string scale = moment.shape_scale < 1.0 ? fixed(moment.shape_scale, 2) + " x" : "-";
     value_line(words::kClippedPins, std::to_string(moment.clipped), column_px);
     value_line(words::kShapeScale, scale, column_px);

@@ -265,7 +265,8 @@ inline constexpr const char* kHintUndoEdit = "Takes the last change back";
 inline constexpr const char* kRedo = "Redo";
 inline constexpr const char* kKeyRedo = "Ctrl+Y";
 inline constexpr const char* kHintRedoEdit = "Makes the change again that was taken back last";
-inline constexpr const char* kNothingChanged = "Nothing was changed: the part is not there, or it would fall in two.";
+inline constexpr const char* kNothingChanged =
+    "Nothing was changed: no part is there, it would fall in two, or it is so already.";
 inline constexpr const char* kEarlierEdits = "Earlier changes";
 inline constexpr const char* kHintEarlierEdits = "Opens the designs as they were changed last";
 inline constexpr const char* kDesignKept = "Your changes are kept in {}, in the folder {}.";
@@ -321,6 +322,7 @@ inline constexpr const char* kLinearRange = "Linear range";
 inline constexpr const char* kWithinLinear = "within";
 inline constexpr const char* kOverEdge = "The finger reaches beyond the edge of the tissue.";
 inline constexpr const char* kMismatch = "Mismatch";
+inline constexpr const char* kPinsBehind = "Pins behind";
 inline constexpr const char* kClippedPins = "Pins clipped";
 inline constexpr const char* kShapeScale = "Shape scaled";
 inline constexpr const char* kLink = "Link";

@@ -272,6 +272,7 @@ void generate_map(const GenerateOptions& options) {
     if (options.analytic) {
         const Phantom phantom = read_phantom(options.phantom);
         refuse_beyond_analytic(phantom, options.phantom);
+        check_phantom(phantom, options.phantom);
         const Map map = analytic_map(phantom);
         write_map(map, options.output);
         std::printf("%s: %zu x %zu cells, %zu depths; analytic stand-in, not a simulation\n", options.output.c_str(),

@@ -68,26 +68,6 @@ void write_piece(const MapTask& task, const std::string& name, const Numbers& nu
     throw files::bad_input(file.string(), key, found, expected);
 }
 
-void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
-    // a map that could not be written is refused before it is computed
-    check_map(map_of_phantom(phantom), file.string());
-    if (phantom.depths_m.back() >= phantom.size_m[2]) {
-        refuse(file, "depths_mm", files::short_number(1e3 * phantom.depths_m.back()),
-               "depths less than the thickness, " + files::short_number(1e3 * phantom.size_m[2]) + " mm");
-    }
-    for (int c = 0; c < 2; ++c) {
-        const auto n = c == 0 ? phantom.n_x : phantom.n_y;
-        const double first_m = phantom.origin_m[c];
-        const double last_m = first_m + phantom.spacing_m[c] * static_cast<double>(n - 1);
-        const double slack_m = 0.5 * phantom.indenter_radius_m;  // how far the indenter may extend beyond a side
-        if (first_m >= -slack_m && last_m <= phantom.size_m[c] + slack_m) continue;
-        refuse(file, "grid",
-               std::string(c == 0 ? "x " : "y ") + files::short_number(1e3 * first_m) + " to " +
-                   files::short_number(1e3 * last_m) + " mm",
-               "an indenter on the tissue, 0 to " + files::short_number(1e3 * phantom.size_m[c]) + " mm");
-    }
-}
-
 void append(const std::vector<double>& list, Numbers& out) { out.insert(out.end(), list.begin(), list.end()); }
 
 // Reads the table's lists from `first` to the end of `numbers`: one list, or with friction three of the same length.
@@ -138,6 +118,26 @@ mechanics::LayerKernel layer_kernel_of(const MapTask& task, const Numbers& numbe
 }
 
 }  // namespace
+
+void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
+    // a map that could not be written is refused before it is computed
+    check_map(map_of_phantom(phantom), file.string());
+    if (phantom.depths_m.back() >= phantom.size_m[2]) {
+        refuse(file, "depths_mm", files::short_number(1e3 * phantom.depths_m.back()),
+               "depths less than the thickness, " + files::short_number(1e3 * phantom.size_m[2]) + " mm");
+    }
+    for (int c = 0; c < 2; ++c) {
+        const auto n = c == 0 ? phantom.n_x : phantom.n_y;
+        const double first_m = phantom.origin_m[c];
+        const double last_m = first_m + phantom.spacing_m[c] * static_cast<double>(n - 1);
+        const double slack_m = 0.5 * phantom.indenter_radius_m;  // how far the indenter may extend beyond a side
+        if (first_m >= -slack_m && last_m <= phantom.size_m[c] + slack_m) continue;
+        refuse(file, "grid",
+               std::string(c == 0 ? "x " : "y ") + files::short_number(1e3 * first_m) + " to " +
+                   files::short_number(1e3 * last_m) + " mm",
+               "an indenter on the tissue, 0 to " + files::short_number(1e3 * phantom.size_m[c]) + " mm");
+    }
+}
 
 MapTask make_map_task(const std::filesystem::path& phantom_file, const std::filesystem::path& folder,
                       double coarseness) {

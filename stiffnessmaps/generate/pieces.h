@@ -21,8 +21,10 @@ struct MapTask {
     std::uint64_t fingerprint = 0;         // of model, mesh, depths and grid
 };
 
-// Throws InputError naming the phantom's key for what the finite elements cannot compute (an indenter off the tissue, a
-// depth through the block, nodules that overlap) and what costs too much (check_cost).
+// Throws InputError naming the phantom's key where the indenter is off the tissue or goes through the block.
+void check_phantom(const Phantom& phantom, const std::filesystem::path& file);
+
+// Throws InputError as check_phantom does, and for nodules that overlap and what costs too much (check_cost).
 MapTask make_map_task(const std::filesystem::path& phantom_file, const std::filesystem::path& folder,
                       double coarseness);
 

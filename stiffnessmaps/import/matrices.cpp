@@ -154,16 +154,20 @@ void sort_layers(Stack& stack) {
                            "each once");
 }
 
-// Converts the numbers to SI units of the quantity; NaN = not measured.
-void scale(Stack& stack, const ImportOptions& options) {
+// Converts the numbers to SI units of the quantity; NaN = not measured. Returns how many numbers were `options.missing`.
+std::size_t scale(Stack& stack, const ImportOptions& options) {
     const double factor = options.scale * (options.negate_force ? -1.0 : 1.0) *
                           (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
+    std::size_t n_missing = 0;
     for (float& value : stack.values) {
         if (std::isnan(value)) continue;
-        const bool missing = options.missing && static_cast<double>(value) == *options.missing;
+        // of the file's -999.9 the float is left
+        const bool missing = options.missing && value == static_cast<float>(*options.missing);
+        if (missing) ++n_missing;
         value = missing ? std::numeric_limits<float>::quiet_NaN()
                         : static_cast<float>(factor * (static_cast<double>(value) - options.offset));
     }
+    return n_missing;
 }
 
 double greatest(const Stack& stack) {
@@ -293,7 +297,9 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
         if (options.progress) options.progress("reading", static_cast<double>(i) / static_cast<double>(files.size()));
         append(normal_files[i], options, stack);
     }
-    scale(stack, options);
+    if (scale(stack, options) == 0 && options.missing)
+        report.notes.push_back("warning: no number is " + files::short_number(*options.missing) +
+                               ", which --missing names: all are taken as measured");
     check_size(stack, options);
     bool from_names = false;
     if (options.quantity == Quantity::force) {

@@ -184,6 +184,22 @@ TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
     CHECK(any_with(warnings, "only 5 distinct levels"));
 }
 
+TEST_CASE("calibrate: a stated level that the points cannot be of is refused") {
+    CalibrationRows counts, shares;
+    counts.file = shares.file = "p.csv";
+    for (int i = 0; i <= 20; ++i) {
+        add_row(200.0 * i, 0.1 * std::exp(0.15 * i), 0, counts);
+        add_row(0.05 * i, 0.1 * std::exp(0.15 * i), 0, shares);
+    }
+    CalibrateOptions options;
+    options.level = LevelField::pressure;
+    CHECK(contains(message_of([&] { calibrate(counts, options); }), "from 0 to 1, as `pressure` has it"));
+    CHECK(calibrate(shares, options).profile.level == LevelField::pressure);
+    options.level = LevelField::pressure_raw;
+    CHECK(contains(message_of([&] { calibrate(shares, options); }), "counts, as `pressure_raw` has it"));
+    CHECK(calibrate(counts, options).profile.level == LevelField::pressure_raw);
+}
+
 TEST_CASE("hard case 3: forces that do not rise are refused") {
     CalibrationRows rows;
     for (int i = 0; i < 20; ++i) add_row(i / 20.0, 2.0 - 0.05 * i, 0, rows);

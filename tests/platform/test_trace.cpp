@@ -93,12 +93,16 @@ TEST_CASE("trace: what the recorded trial was reads back; a trace without it say
     info.mode = "test";
     info.finger_offset_mm = 15.0;
     info.turn = TissueTurn{270, true};
+    info.parts = {{"a-edited.json", std::string(64, '0')}, {"b.json", std::string(64, 'f')}};
     const TraceInfo trial = written("trial.tsv");
     CHECK(trial.mode == "test");
     CHECK(trial.finger_offset_mm == 15.0);
     REQUIRE(trial.turn);
     CHECK(trial.turn->rotate_deg == 270);
     CHECK(trial.turn->flip);
+    REQUIRE(trial.parts.size() == 2);
+    CHECK(trial.parts[0].file == "a-edited.json");
+    CHECK(trial.parts[1].sha256 == std::string(64, 'f'));
     const auto told = [&](const std::string& keys) {
         write_text_atomically(folder / "trial.json", R"({"screen_px": [1280, 800], )" + keys + "}");
         return message_of([&] { read_trace(folder / "trial.tsv"); });

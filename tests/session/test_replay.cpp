@@ -284,3 +284,19 @@ TEST_CASE("replay: a trace made at another rate gives the same lags") {
     }
     CHECK(lag_m[1] == close_to(lag_m[0]).epsilon(0.03));  // jitter and rounding differ
 }
+
+TEST_CASE("replay: parts that were changed since the trace was recorded, or are others, are named") {
+    const TemporaryFolder folder;
+    const std::string part = PALPA_SOURCE_DIR "/assets/parts/beams/homogeneous.json";
+    std::filesystem::copy_file(part, folder / "beam.json");
+    write_text_atomically(folder / "s.json",
+                          R"({"name": "s", "tissue": {"part": {"designs": ["beam.json"], "method": "timoshenko"}}})");
+    const Scene scene = read_scene(folder / "s.json", PALPA_SOURCE_DIR "/assets");
+    TraceInfo info;
+    CHECK(other_parts(info, scene).empty());  // an older trace
+    info.parts = traced_parts(scene);
+    REQUIRE(info.parts.size() == 1);
+    CHECK(other_parts(info, scene).empty());
+    write_text_atomically(folder / "beam.json", read_text(part) + "\n");
+    CHECK(other_parts(info, scene) == "it was recorded on 'beam.json', the scene has 'beam.json', changed since");
+}

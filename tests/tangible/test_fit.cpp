@@ -77,4 +77,12 @@ TEST_CASE("fit: bad tables and presses that tell nothing") {
     CHECK(contains(presses_refused("time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n0\t1\t1\t1\t1\n0\t1\t1\t1\t1\n"),
                    "a time after"));
     CHECK_THROWS_AS(fit_presses(small_strip()->device, std::vector<RecordedTick>(5)), std::runtime_error);
+    std::vector<RecordedTick> held(30);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        held[i].time_s = 0.01 * static_cast<double>(i);
+        held[i].depth_m = 3e-3;
+        held[i].force_N = 1.0;
+    }
+    CHECK_THROWS_WITH_AS(fit_presses(small_strip()->device, held), doctest::Contains("stay at a depth of 3 mm"),
+                         std::runtime_error);
 }

@@ -257,6 +257,7 @@ TEST_CASE("maps: forces that are never above 0 have no stiff regions, and no rat
         const std::string name = (folder / (factor < 0.0 ? "reversed.map" : "zero.map")).string();
         write_map(map, name);
         refused("detect " + name + " --write", "no cell that resists");
+        CHECK(contains(maps("info " + name).err, "found no force above zero, expected pressing to be positive"));
         const Called compared = maps("compare " + name + " " + name);
         CHECK(compared.status == 0);
         CHECK_FALSE(contains(compared.out, "nan"));

@@ -137,6 +137,18 @@ TEST_CASE("maps import: matrices, one file per depth") {
     CHECK_FALSE(std::filesystem::exists(folder / "n.map/filled_normal_N.npy"));
 }
 
+TEST_CASE("maps import: the number that stands for not measured is found as a float has it, or missed with a warning") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "a_2mm.csv", "0.2,-999.9\n0.4,0.5\n");
+    const Called called = import(folder, "a_2mm.csv --spacing-mm 1 --missing -999.9 -o m.map");
+    CAPTURE(called.err);
+    REQUIRE(called.status == 0);
+    CHECK_FALSE(contains(called.err, "warning"));
+    CHECK(std::isnan(read_map(folder / "m.map").normal_N[1]));
+    CHECK(contains(import(folder, "m.map/normal_N.npy --depths-mm 2 --spacing-mm 1 --missing -1 -o n.map").err,
+                   "warning: no number is -1"));
+}
+
 TEST_CASE("maps import: forces that fall with depth are taken with a warning about the depths' order") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "light.txt", "0.1 0.2\n0.1 0.2\n");
@@ -173,6 +185,12 @@ TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves
     refused("r.csv " + kColumns + "--grid hexagons -o n.map", "--grid");
     refused("r.csv " + kColumns + "--form sliding -o n.map", "a column for t");
     refused("none.csv -o n.map", "none.csv: cannot be read");
+    write_text_atomically(folder / "a_2mm.csv", "0.2,0.3\n0.4,0.5\n");
+    refused("r.csv " + kColumns + "--scale 0.02 -o n.map",
+            "--scale: found a recording of the form probing, expected arrays");
+    refused("r.csv " + kColumns + "--surface-z-mm 2 -o n.map", "expected a table of sliding");
+    refused("a_2mm.csv --spacing-mm 1 --layers 5 -o n.map",
+            "--layers: found a recording of the form matrices, expected a table");
     refused("r.csv " + kColumns + "-o none/n.map", "no folder to put it into");
     CHECK(import(folder, "mN.csv --force-unit mN -o n.map").status == 0);
     CHECK(read_map(folder / "n.map").normal_N.back() == close_to(2.1f));

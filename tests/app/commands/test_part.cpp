@@ -96,11 +96,14 @@ TEST_CASE("part evaluate: every method has every key, null where it has no such 
     CHECK(json["methods"].size() == 5);
     for (const auto& method : json["methods"].items()) {
         CAPTURE(method.key());
-        for (const char* key : {"displacement_mm", "stiffness_N_per_m", "applies", "error_percent", "error_against",
-                                "cells", "iterations", "energy_error_percent", "converged", "time_s", "memory_MB"})
+        for (const char* key :
+             {"displacement_mm", "stiffness_N_per_m", "applies", "why_not", "error_percent", "error_against", "cells",
+              "iterations", "energy_error_percent", "converged", "time_s", "memory_MB"})
             CHECK(method.value().contains(key));
     }
     CHECK(json["methods"]["paper"]["applies"] == false);
+    CHECK(json["methods"]["paper"]["why_not"].is_string());
+    CHECK(json["methods"]["euler-bernoulli"]["why_not"].is_null());
     CHECK(json["methods"]["paper"]["stiffness_N_per_m"].get<double>() == close_to(13833.33).epsilon(1e-5));
 }
 

@@ -144,6 +144,8 @@ TEST_CASE("characterise and identify: what cannot be is refused with 2") {
     refused("identify --device " + arm + " --simulate --virtual-time -o " + arm, "another file");
     const SlabScene high(R"({"arm": {"impedance": "high", "device": "arm.json"}})");
     refused("characterise " + high.file("s.json") + " --simulate --virtual-time", "low");
+    refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0.5,2",
+            "found 2 at a depth of 10 mm, where the force limit of 15 N holds the force");
 }
 
 TEST_CASE("identify: an arm that does not answer is named with its address") {

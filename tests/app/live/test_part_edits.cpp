@@ -41,7 +41,7 @@ void wish(PartWish::Kind kind, Desk& desk) {
     PartWish out;
     out.kind = kind;
     if (kind == PartWish::Kind::edit) {
-        out.path_m = {{0.03, 0.01}};
+        out.path_m = {{0.02 + 0.004 * desk.app.view.part.edits[0], 0.01}};  // each beside the one before
         out.radius_m = 1e-3;
     }
     change_part(out, desk.window, desk.gui, desk.app);
@@ -102,5 +102,11 @@ TEST_CASE("part edits: a second session writes a file of its own, and the first 
     CHECK(desk.app.notices.note == words::kNothingChanged);
     CHECK(desk.app.notices.problems.empty());
     CHECK_FALSE(fs::exists(home.edited("-3")));
+    missed.tool = PartTool::permute;  // to the material that is there
+    missed.material = "hard";
+    missed.path_m = {{0.03, 0.01}};
+    desk.app.notices.note.clear();
+    change_part(missed, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.notices.note == words::kNothingChanged);
     CHECK(operations_of(home.folder / "bar.json") == 1);
 }

@@ -80,6 +80,13 @@ TEST_CASE("live: closing in the middle of a pair asks first, and Enter says that
     REQUIRE(trial_goes_on(desk.run()));
     CHECK(desk.run().interval == 1);
     CHECK(desk.asks_to_quit());  // the first surface was felt
+    repeat_untouched(desk.run());
+    REQUIRE(at<step::Device>(desk.run()));
+    CHECK(desk.asks_to_quit());  // also while the second one waits to be repeated
+    desk.step();
+    desk.step(BeginStep{});
+    desk.step();
+    REQUIRE(trial_goes_on(desk.run()));
     desk.press();
     enter();
     REQUIRE(at<step::Question>(desk.run()));

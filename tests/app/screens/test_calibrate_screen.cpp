@@ -2,7 +2,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <stdlib.h>
 #include <string>
 #include <thread>
 
@@ -88,6 +91,38 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 8);
     REQUIRE(form.recording->session.points.size() == 3);
     CHECK(form.recording->session.points[2].force_N == close_to(7.0 * calibration::kN_per_gf));
+}
+
+TEST_CASE("calibrate screen: points that make no profile say why, and the session goes on") {
+    const TemporaryFolder folder;
+    ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+    CalibrateForm form;
+    std::snprintf(form.name, sizeof form.name, "pen");
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    form.recording = calibration::open_recording(arguments);
+    const auto press = [&](double pressure, double force_N) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+        hold(pressure, *form.recording, 1.0);
+        CHECK(calibration::take_typed_N(force_N, *form.recording));
+    };
+    press(0.1, 0.3);
+    press(0.3, 0.9);
+    keep_profile(form);
+    CHECK(form.problem.find("found 2 distinct levels") != std::string::npos);
+    REQUIRE(form.recording);
+    press(0.6, 60.5);  // N, mistyped
+    keep_profile(form);
+    CHECK(form.problem.find("found forces up to 60.5 N") != std::string::npos);
+    REQUIRE(form.recording);
+    calibration::drop_last_point(*form.recording);
+    press(0.6, 2.5);
+    form.problem.clear();
+    keep_profile(form);
+    CHECK(form.problem.empty());
+    CHECK_FALSE(form.recording);
+    CHECK(std::filesystem::exists(folder / "palpa/profiles/pen.json"));
 }
 
 TEST_CASE("calibrate screen: a load cell's newtons per count are asked for, and never assumed") {

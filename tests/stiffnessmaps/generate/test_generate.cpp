@@ -195,6 +195,7 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     refused("\"sphere\"", "\"cylinder\", \"length_mm\": 0.01", "", "a quarter of the nodes' spacing");
     refused("[1, 2]", "[1, 12]", "", "depths less than the thickness, 12 mm");
     refused("[0, 2]", "[-2, 2]", "", "expected an indenter on the tissue, 0 to 40 mm");
+    refused("[0, 2]", "[-2, 2]", "--method analytic", "expected an indenter on the tissue, 0 to 40 mm");
     refused("0.45, \"assumed\"", "0.5, \"assumed\"", "", "poisson");
     refused("40000", "-1", "", "young_Pa");
     refused("[21, 10]", "[9, 10]", "", "p.json: nodules A: found x 20, y 18 mm, expected a place on the map");
