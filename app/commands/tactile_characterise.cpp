@@ -1,6 +1,7 @@
 // palpa tactile characterise: the stiffness that a force arm really renders.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -173,9 +174,12 @@ void check_characterise(const CharacteriseOptions& options) {
         if (stiffness < 0.01 || stiffness > 10.0)
             throw files::bad_input("--stiffness-N-per-mm", "", files::short_number(stiffness), "from 0.01 to 10");
     }
-    if (options.folder.empty()) return;
-    files::check_output_folder(options.folder);
-    std::filesystem::create_directories(options.folder);
+    std::vector<double> sorted = options.stiffness_N_per_mm;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end())  // both would go to one table
+        throw files::bad_input("--stiffness-N-per-mm", "", files::short_number(*twice) + " twice", "each number once");
+    if (!options.folder.empty()) files::check_output_folder(options.folder);
 }
 
 // One stiffness: strokes, line, and its entry in the report.
@@ -205,6 +209,7 @@ void characterise(const CharacteriseOptions& options) {
         rig_device(options.rig, has_arm ? scene.tactile->arm->device : std::filesystem::path());
     const CharacterisedTissue tissue = tissue_of(options, scene);
     check_force(options, tissue, device);
+    if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     files::Json json{{"scene", options.scene}, {"simulated", options.rig.simulate}};
     if (options.rig.simulate) json["seed"] = options.rig.seed;
     const auto compensation = compensation_for(options, device, json);

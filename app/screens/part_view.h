@@ -40,7 +40,7 @@ struct PressPoint {
 
 struct PartView {
     PartTool tool = PartTool::press;
-    std::size_t material = 0;                      // that permute gives
+    std::size_t material = 1;                      // that permute gives: most bodies are of the first
     int radius = 1;                                // of the tool: one of kToolRadii_mm
     bool magnified = false;                        // displacements are drawn kMagnified times as large
     std::vector<std::array<double, 2>> stroke_m;   // on the tissue's plane; empty: none is being drawn

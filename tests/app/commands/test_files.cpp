@@ -335,6 +335,11 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
     refused("maps sample in.map --x-mm nan --y-mm 1 --force-N 1", "--x-mm: found 'nan', expected a finite number");
     refused("bench trace in.map -o t.tsv --seconds nan", "--seconds: found 'nan'");
     refused("bench trace in.map -o t.tsv --seconds -1", "--seconds");
+    refused("bench trace in.map -o t.tsv --seconds 100000 --rate-Hz 100000", "expected at most 2e7 samples");
+    write_text_atomically(folder / "pens.csv", "inventory_id,tablet,date,pressure_norm,force_N\na,b,c,0.5,-1\n");
+    refused("bench pens pens.csv", "line 2, force_N: found '-1', expected a force of 0 or more");
+    write_text_atomically(folder / "pens.csv", "inventory_id,tablet,date,pressure_norm,force_N\na,b,c,2,1\n");
+    refused("bench pens pens.csv", "line 2, pressure_norm: found '2', expected a pressure from 0 to 1");
     refused("maps generate phantom.json -o n.map --jobs -1", "--jobs");
     refused("maps plot in.map -o f.png --force-N inf", "--force-N");
     refused("study order protocol.json --participants -2", "--participants");

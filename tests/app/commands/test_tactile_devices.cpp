@@ -146,6 +146,7 @@ TEST_CASE("characterise and identify: what cannot be is refused with 2") {
     refused("characterise " + high.file("s.json") + " --simulate --virtual-time", "low");
     refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0.5,2",
             "found 2 at a depth of 10 mm, where the force limit of 15 N holds the force");
+    refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0.5,0.5", "found 0.5 twice");
 }
 
 TEST_CASE("identify: an arm that does not answer is named with its address") {
