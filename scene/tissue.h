@@ -34,8 +34,9 @@ inline bool is_curve(const TissueOptions& options) {
     return std::holds_alternative<ForceCurveOptions>(options) || std::holds_alternative<SoftBlockOptions>(options);
 }
 
+// nullptr for a tissue that is no part
 const PartOptions* part_options(const TissueOptions& options);
-PartOptions* part_options(TissueOptions& options);  // nullptr for a tissue that is no part
+PartOptions* part_options(TissueOptions& options);
 void leave_out_nodules(TissueOptions& options);     // sets `nodules` to false
 
 // Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws

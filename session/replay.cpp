@@ -57,8 +57,8 @@ void turn_as_recorded(const platform::TraceInfo& info, scene::Scene& scene) {
 }
 
 std::string other_parts(const platform::TraceInfo& info, const scene::Scene& scene) {
-    const std::vector<platform::TracedPart> now = traced_parts(scene);
     if (info.parts.empty()) return "";  // an older trace, or one of other tissue
+    const std::vector<platform::TracedPart> now = traced_parts(scene);
     std::string out;
     for (std::size_t i = 0; i < info.parts.size(); ++i) {
         if (i < now.size() && now[i].sha256 == info.parts[i].sha256) continue;
