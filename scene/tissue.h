@@ -37,7 +37,7 @@ inline bool is_curve(const TissueOptions& options) {
 // nullptr for a tissue that is no part
 const PartOptions* part_options(const TissueOptions& options);
 PartOptions* part_options(TissueOptions& options);
-void leave_out_nodules(TissueOptions& options);     // sets `nodules` to false
+void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
 
 // Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws
 // InputError, mechanics' errors for a block that cannot be solved, and mechanics::Cancelled.
