@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "files/text.h"
+#include "files/input_error.h"
 #include "scene/advance.h"
 #include "scene/plan.h"
 
