@@ -16,6 +16,8 @@ using Eigen::Index;
 // round-off below 0.5 the matrix can no longer be factored (2026-11)
 constexpr double kMostPoisson = 0.5 - 1e-10;
 
+constexpr files::Bounds kModulus{1e-6, 1e15};  // softer than any gel, stiffer than diamond
+
 Law read_law(files::JsonReader& json) {
     if (!json.has("law")) {
         for (const char* key : {"mu_Pa", "kappa_Pa"}) {
@@ -30,7 +32,7 @@ Law read_law(files::JsonReader& json) {
 // Returns the moduli at rest of a law for large strains.
 Material read_large_material(files::JsonReader& json, Law law) {
     json.only({"law", "mu_Pa", "kappa_Pa"});
-    LargeMaterial large{law, json.number("mu_Pa", {0.0, 1e15, true}), json.number("kappa_Pa", {0.0, 1e15, true})};
+    LargeMaterial large{law, json.number("mu_Pa", kModulus), json.number("kappa_Pa", kModulus)};
     const Material material = at_rest(large);
     if (!(material.poisson <= kMostPoisson)) {
         json.fail("kappa_Pa", files::number_text(large.kappa_Pa),
@@ -51,7 +53,7 @@ Material read_material(files::JsonReader json, Law& law) {
     if (law != Law::linear) return read_large_material(json, law);
     json.only({"law", "young_Pa", "poisson"});
     Material material;
-    material.young_Pa = json.number("young_Pa", {0.0, 1e15, true});
+    material.young_Pa = json.number("young_Pa", kModulus);
     material.poisson = json.number("poisson", files::kAnyNumber);
     if (!(material.poisson > -1.0 && material.poisson <= kMostPoisson)) {
         json.fail("poisson", files::number_text(material.poisson),

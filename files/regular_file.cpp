@@ -135,6 +135,16 @@ void check_output_folder(const fs::path& folder, const std::vector<fs::path>& in
     for (const std::string& name : names) check_output(folder / name, inputs);
 }
 
+void check_own_results(const fs::path& folder, const std::string& mark, const std::vector<std::string>& names) {
+    std::error_code none;
+    if (fs::exists(folder / mark, none)) return;
+    for (const std::string& name : names) {
+        if (!fs::exists(fs::symlink_status(folder / name, none))) continue;
+        throw bad_input((folder / name).string(), "", "a file that is no earlier result (no " + mark + " beside it)",
+                        "a folder without one, since a result of this name is written");
+    }
+}
+
 void check_new(const fs::path& path) {
     std::error_code error;
     if (fs::exists(fs::symlink_status(path, error)))

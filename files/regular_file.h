@@ -50,6 +50,11 @@ void check_output(const std::filesystem::path& path, const std::vector<std::file
 void check_output_folder(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs = {},
                          const std::vector<std::string>& names = {});
 
+// Checks, before any work, that results of these names would replace none but earlier results: in a folder without the
+// file `mark`, which is written first of all, such names are a person's own. Throws InputError.
+void check_own_results(const std::filesystem::path& folder, const std::string& mark,
+                       const std::vector<std::string>& names);
+
 // Checks, before any work, that there is nothing of this name: for logs, maps and recordings, which are never overwritten.
 // Throws InputError.
 void check_new(const std::filesystem::path& path);

@@ -24,7 +24,7 @@ PartMaterial read_material(files::JsonReader json, const std::string& name) {
         json.fail("young_Pa", json.has("shore_A") ? "shore_A beside it" : "neither it nor shore_A",
                   "one of young_Pa and shore_A");
     }
-    out.elastic.young_Pa = json.has("young_Pa") ? json.number("young_Pa", {0.0, 1e15, true})
+    out.elastic.young_Pa = json.has("young_Pa") ? json.number("young_Pa", {1e-6, 1e15})
                                                 : young_Pa_of_shore_A(json.number("shore_A", {1.0, 99.0}));
     out.elastic.poisson = json.number("poisson", files::kAnyNumber);
     if (!(out.elastic.poisson > -1.0 && out.elastic.poisson <= 0.4999)) {

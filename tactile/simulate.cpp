@@ -1,9 +1,6 @@
 #include "tactile/simulate.h"
 
-#include <cerrno>
-#include <cstdlib>
 #include <stdexcept>
-#include <system_error>
 
 #include "files/table.h"
 
@@ -12,12 +9,6 @@ namespace {
 
 using devices::simulators::simulator_program;
 using devices::simulators::SimulatorProcess;
-
-std::filesystem::path new_folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "palpa-tactile-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    return name;
-}
 
 int number_after(const std::string& line, const std::string& word) {
     if (line.rfind(word + " ", 0) != 0) throw std::runtime_error("the simulator said: " + line);
@@ -38,8 +29,7 @@ void start_arm(const std::filesystem::path& press, std::uint64_t seed, devices::
 }
 
 void start_pins(const std::filesystem::path& device, std::uint64_t seed, devices::PinDevice& pins, Simulators& out) {
-    out.folder = new_folder();
-    out.heights = out.folder / "heights.tsv";
+    out.heights = out.folder.emplace() / "heights.tsv";
     out.pins = std::make_unique<SimulatorProcess>(
         simulator_program("maestro_simulator"),
         std::vector<std::string>{device.string(), "--seed", std::to_string(seed), "--heights", out.heights.string()});
@@ -47,12 +37,6 @@ void start_pins(const std::filesystem::path& device, std::uint64_t seed, devices
 }
 
 }  // namespace
-
-Simulators::~Simulators() {
-    pins.reset();
-    std::error_code ignored;
-    if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
-}
 
 std::unique_ptr<Simulators> start_simulators(const std::filesystem::path& press, std::uint64_t seed,
                                              TactilePlan& plan) {

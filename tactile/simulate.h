@@ -4,22 +4,20 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "devices/simulators/process.h"
+#include "files/temporary_folder.h"
 #include "tactile/plan.h"
 
 namespace palpa::tactile {
 
 // They end with this.
 struct Simulators {
-    Simulators() = default;
-    ~Simulators();
-    Simulators(const Simulators&) = delete;
-    Simulators& operator=(const Simulators&) = delete;
-
+    std::optional<files::TemporaryFolder> folder;  // before the processes, which write into it
     std::unique_ptr<devices::simulators::SimulatorProcess> arm;
     std::unique_ptr<devices::simulators::SimulatorProcess> pins;
-    std::filesystem::path folder;   // of its own, removed with this
     std::filesystem::path heights;  // where the pins' true heights are written; empty without pins
 };
 

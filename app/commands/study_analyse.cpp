@@ -25,6 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kReport =
+    "report.json";  // written first: where it stands, the other names are an earlier report's
+
 struct AnalyseOptions {
     std::string input;
     std::string output;
@@ -57,7 +60,8 @@ void refuse_folder_of_logs(const std::string& output) {
 
 // The tables and figures that a report may have.
 std::vector<std::string> result_names() {
-    std::vector<std::string> names{"figures.gp", "froc.gp", "psychometric.gp", "mixed_model.R", "stard.md"};
+    std::vector<std::string> names{"figures.gp",    "froc.gp",  "psychometric.gp",
+                                   "mixed_model.R", "stard.md", "report.md"};
     for (const std::string& table : study::long_table_names())
         names.insert(names.end(), {table + ".tsv", table + ".json"});
     for (const std::string& table : study::table_names()) names.insert(names.end(), {table + ".tsv", table + ".json"});
@@ -69,7 +73,7 @@ std::vector<std::string> result_names() {
 
 // Removes what an earlier report has left in its folder, since not every report has all tables and figures.
 void remove_earlier_report(const fs::path& folder) {
-    if (!fs::exists(folder / "report.json")) return;
+    if (!fs::exists(folder / kReport)) return;
     std::error_code ignored;
     for (const std::string& name : result_names()) {
         if (fs::is_regular_file(fs::symlink_status(folder / name))) fs::remove(folder / name, ignored);
@@ -89,6 +93,7 @@ void write_report(const study::Report& report, const study::Observations& seen,
     if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
     const files::FolderLock lock(folder, "another palpa study analyse");  // two would remove each other's figures
     remove_earlier_report(folder);
+    files::write_text_atomically(folder / kReport, files::json_text(study::report_json(report)));
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
         files::write_text_atomically(folder / (table.name + ".json"), files::json_text(study::dictionary_of(table)));
@@ -101,7 +106,6 @@ void write_report(const study::Report& report, const study::Observations& seen,
     if (!script.empty()) files::write_text_atomically(folder / "mixed_model.R", script);
     files::write_text_atomically(folder / "stard.md", study::stard_checklist(report, protocol ? &*protocol : nullptr));
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
-    files::write_text_atomically(folder / "report.json", files::json_text(study::report_json(report)));
     std::string failed;
     for (const auto draw : {&figures::draw_figures, &figures::draw_froc_figure, &figures::draw_psychometric_figure}) {
         try {
@@ -137,13 +141,14 @@ void analyse(const AnalyseOptions& options) {
     if (!options.output.empty()) {
         files::check_output_folder(options.output);
         refuse_folder_of_logs(options.output);
+        files::check_own_results(options.output, kReport, result_names());
     }
     const study::Observations seen = read_observations(options);
     const study::Report report = study::make_report(seen, options.report);
     // the logs of a study have fixed names; a table of counts may have any name
     if (!options.output.empty() && !fs::is_directory(options.input)) {
         std::vector<std::string> names = result_names();
-        names.insert(names.end(), {"report.md", "report.json"});
+        names.push_back(kReport);
         files::check_output_folder(options.output, {options.input}, names);
     }
     if (!options.output.empty()) write_report(report, seen, protocol_of(options.input), options.output);

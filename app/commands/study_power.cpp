@@ -137,16 +137,19 @@ void measure(const PowerArguments& arguments) {
     take_part(arguments, options);
     if (options.merge && options.output.empty())
         throw files::bad_input("--output", "", "nothing", "the folder whose parts are to be merged");
-    if (!arguments.output.empty()) files::check_output_folder(arguments.output);
+    if (!arguments.output.empty()) {
+        files::check_output_folder(arguments.output);
+        files::check_own_results(arguments.output, "power_report.json", {"power.tsv", "power.json", "power.md"});
+    }
     const study::Protocol protocol = study::read_protocol(arguments.protocol);
     const PowerOutcome outcome = measure_power(protocol, options);
     if (outcome.complete && !options.output.empty()) {
         const study::ReportTable table = study::power_table(outcome.results);
+        files::write_text_atomically(options.output / "power_report.json",
+                                     files::json_text(outcome_json(protocol, options, outcome)));
         files::write_text_atomically(options.output / "power.tsv", study::tsv_text(table));
         files::write_text_atomically(options.output / "power.json", files::json_text(study::power_dictionary()));
         files::write_text_atomically(options.output / "power.md", markdown(protocol, options, outcome, true));
-        files::write_text_atomically(options.output / "power_report.json",
-                                     files::json_text(outcome_json(protocol, options, outcome)));
     }
     if (arguments.json) {
         std::fputs(files::json_text(outcome_json(protocol, options, outcome)).c_str(), stdout);

@@ -19,6 +19,7 @@
 #include "files/json.h"
 #include "files/printable.h"
 #include "files/regular_file.h"
+#include "files/temporary_folder.h"
 #include "files/text.h"
 
 namespace palpa::app {
@@ -36,7 +37,6 @@ struct PinsOptions {
     bool move = false;
     std::uint64_t seed = 1;
     double scatter = 0.1;
-    std::string heights;
     std::string output;
     int pulses = 5;
     bool json = false;
@@ -188,7 +188,8 @@ std::vector<double> gauge_heights(const std::filesystem::path& file, std::size_t
 void calibrate_pins(const PinsOptions& options) {
     files::check_output(options.output, {options.device});
     PinDevice device = devices::read_pin_device(options.device);
-    const std::filesystem::path truth = options.output + ".heights.tsv";
+    const files::TemporaryFolder folder;
+    const std::filesystem::path truth = folder / "heights.tsv";
     const auto simulator = simulated_pins(options,
                                           {"--scatter", files::number_text(options.scatter), "--seed",
                                            std::to_string(options.seed), "--heights", truth.string()},
@@ -215,8 +216,6 @@ void calibrate_pins(const PinsOptions& options) {
         }
         measured.height_m.push_back(std::move(heights_m));
     }
-    std::error_code ignored;
-    std::filesystem::remove(truth, ignored);
     const devices::PinCalibration found = devices::calibrate(device, measured);
     PinDevice calibrated = found.device;
     calibrated.port = devices::read_pin_device(options.device).port;

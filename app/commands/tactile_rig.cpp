@@ -3,37 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <stdlib.h>
+#include <optional>
 #include <unistd.h>
 
 #include "app/assets.h"
 #include "files/input_error.h"
+#include "files/temporary_folder.h"
 
 namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
 using devices::simulators::SimulatorProcess;
-
-// The simulator reads its hand's path from a file.
-class PressFolder {
-  public:
-    PressFolder() {
-        std::string name = (fs::temp_directory_path() / "palpa-press-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-        path_ = name;
-    }
-    ~PressFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    PressFolder(const PressFolder&) = delete;
-    PressFolder& operator=(const PressFolder&) = delete;
-    fs::path file() const { return path_ / "press.tsv"; }
-
-  private:
-    fs::path path_;
-};
 
 // A person follows this line; the simulated hand needs it not, but its owner sees how far it is.
 std::function<void(double)> guide(const std::vector<devices::PressRow>& path, const std::string& what, bool person) {
@@ -84,18 +65,18 @@ RigResult stroke_along(const RigOptions& options, const devices::ArmDevice& devi
                        const std::string& what) {
     stroke.seconds = path.back().t_s + 0.2;
     stroke.progress = guide(path, what, !options.simulate);
-    std::unique_ptr<PressFolder> folder;
+    std::optional<files::TemporaryFolder> folder;  // where the simulator reads its hand's path
     std::unique_ptr<SimulatorProcess> simulator;
     std::unique_ptr<tactile::ArmRig> rig;
     if (options.virtual_time) {
         using namespace devices::simulators;
         rig = tactile::virtual_rig(make_arm_plant(arm_parameters(options.seed), path, options.seed));
     } else if (options.simulate) {
-        folder = std::make_unique<PressFolder>();
-        devices::write_press(path, folder->file());
+        const fs::path press = folder.emplace() / "press.tsv";
+        devices::write_press(path, press);
         simulator = std::make_unique<SimulatorProcess>(
             devices::simulators::simulator_program("arm_simulator"),
-            std::vector<std::string>{"--press", folder->file().string(), "--seed", std::to_string(options.seed)});
+            std::vector<std::string>{"--press", press.string(), "--seed", std::to_string(options.seed)});
         devices::ArmDevice local = device;
         local.host = "127.0.0.1";
         local.port = std::stoi(simulator->port());

@@ -95,7 +95,9 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
     const float split = area.y0 + 0.66f * area.height();
     constexpr double kFull_percent = 100.0;
     Plot curve{data_area({area.x0, area.y0 + gui.mm(), area.x1, split}, gui.mm()), 0.0, kFull_percent, 0.0, 0.5};
-    const double now_N = session.forces.empty() ? 0.0 : session.forces.back().value;
+    // a number that was typed is no present force: it belongs to the point that it made
+    const bool measures = recording.sensor && !session.forces.empty();
+    const double now_N = measures ? session.forces.back().value : 0.0;
     for (const calibration::CapturedPoint& point : session.points)
         curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
     curve.most_y = std::max(curve.most_y, 1.1 * now_N);
@@ -129,8 +131,11 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
         draw.PopClipRect();
     }
     if (!session.levels.empty()) {
-        cross(draw, curve.at(kFull_percent * share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(),
-              kLag, 0.4f * gui.mm());
+        const double x = kFull_percent * share_of(options, session.levels.back().value);
+        if (measures)
+            cross(draw, curve.at(x, now_N), 1.2f * gui.mm(), kLag, 0.4f * gui.mm());
+        else
+            draw.AddLine(curve.at(x, 0.0), curve.at(x, curve.most_y), kLag, 0.4f * gui.mm());
     }
 }
 
@@ -143,8 +148,7 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     push_touchable_frame(2.0f, gui);
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
     ImGui::PopStyleVar();
-    const bool entered = ImGui::IsItemDeactivated() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
-                                                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
+    const bool entered = is_deactivated_by_enter();
     if (!big_button(words::kRecord, words::kEnter, {}, gui) && !entered) return;
     guide.again = entered;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
@@ -239,8 +243,10 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     const double level =
         session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
     value_line(words::kPressure, fixed(100.0 * level, 1) + " %", column_px);
-    value_line(words::kForce,
-               fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N", column_px);
+    if (recording.sensor)
+        value_line(words::kForce,
+                   fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N",
+                   column_px);
     value_line(words::kPoints, std::to_string(session.points.size()), column_px);
     value_line(words::kPressNumber, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);

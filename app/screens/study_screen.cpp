@@ -146,6 +146,8 @@ void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answe
     const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
     if (focus) ImGui::SetKeyboardFocusHere();
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
+    // Enter takes the focus from the field, which an answer that is refused needs again
+    if (is_deactivated_by_enter() && !is_answer(item, answer)) ImGui::SetKeyboardFocusHere(-1);
     // the field scrolls; what it does not hold can still be read
     if (ImGui::CalcTextSize(answer.c_str()).x > width_px - 4.0f * gui.mm()) paragraph(answer);
 }

@@ -25,6 +25,11 @@ void end_panel(const char* name, Gui& gui) {
     ImGui::End();
 }
 
+bool is_deactivated_by_enter() {
+    return ImGui::IsItemDeactivated() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
+                                          ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
+}
+
 float share_of_line_px(int count) {
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
     return std::floor((ImGui::GetContentRegionAvail().x - gap_px * static_cast<float>(count - 1)) /

@@ -53,6 +53,9 @@ void hint_for_last(const char* text);
 // Returns the width of one of `count` buttons that share the rest of the line.
 float share_of_line_px(int count);
 
+// Whether Enter has just taken the focus from the field before.
+bool is_deactivated_by_enter();
+
 std::string broken_at_spaces(const std::string& text, float width_px);
 void wrapped_text(const std::string& text);  // lines break at spaces, never within a number
 void paragraph(const std::string& text);     // the same, pale

@@ -95,7 +95,8 @@ int main(int argc, char** argv) {
     app.add_option("--lose", options.lose, "share of the answers")->check(CLI::Range(0.0, 1.0));
     app.add_option("--duplicate", options.duplicate)->check(CLI::Range(0.0, 1.0));
     app.add_option("--reorder", options.reorder, "swapped with the next")->check(CLI::Range(0.0, 1.0));
-    app.add_option("--silent-from-s", options.silent_from_s, "the link is cut then");
+    app.add_option("--silent-from-s", options.silent_from_s,
+                   "after the first command that is more than rest, the link is cut");
     app.add_option("--silent-s", options.silent_s, "for so long");
     app.add_option("--truth", truth, "table of time (steady clock), depth, hand's and motor's force, once per ms");
     CLI11_PARSE(app, argc, argv);
@@ -115,7 +116,7 @@ int main(int argc, char** argv) {
         return 1;
     }
     if (sim.truth != nullptr) std::fprintf(sim.truth, "t_host_s\tdepth_mm\thand_N\tmotor_N\n");
-    end_on_signals();  // before the line of its port: who has read that may end it
+    listen_to_signals();  // before the line of its port: who has read that may end it
     std::printf("port %d\nsensor %d\n", port, sensor_port);
     std::fflush(stdout);
     platform::set_real_time(true);
@@ -132,7 +133,8 @@ int main(int argc, char** argv) {
         ::ppoll(waiting, 2, &most, nullptr);
         const double now_s = steady_s();
         advance(now_s - sim.began_s - sim.plant.time_s, sim.plant);
-        const bool cut = silent(options, now_s - sim.began_s);
+        const bool cut =
+            silent(options, sim.plant.hand_began_s < 0.0 ? 0.0 : sim.plant.time_s - sim.plant.hand_began_s);
         take_commands(sim, [&](const auto& bytes, const sockaddr_in& from) {
             if (!cut) line.pass({bytes, from}, [&](const Reply& reply) { send_to(sim.link, reply.to, reply.bytes); });
         });

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
         std::perror("load_cell_simulator");
         return 1;
     }
-    end_on_signals();  // before the line of its port: who has read that may end it
+    listen_to_signals();  // before the line of its port: who has read that may end it
     std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
     std::fflush(stdout);
 

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
     app.add_flag("--no-crc", no_crc, "boards that check no CRC");
     app.add_option("--stuck", stuck, "pins that never move");
     add_line_options(app, faults);
-    app.add_option("--silent-from-s", options.silent_from_s, "unplugged then");
+    app.add_option("--silent-from-s", options.silent_from_s, "unplugged then, or at SIGUSR1");
     app.add_option("--silent-s", options.silent_s, "for so long");
     CLI11_PARSE(app, argc, argv);
     MaestroBoards boards;
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
         return 1;
     }
     if (truth != nullptr) write_head(boards.device, truth);
-    end_on_signals();  // before the line of its port: who has read that may end it
+    listen_to_signals();  // before the line of its port: who has read that may end it
     std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
     std::fflush(stdout);
     platform::set_real_time(true);

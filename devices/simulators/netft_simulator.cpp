@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
         std::perror("netft_simulator");
         return 1;
     }
-    end_on_signals();  // before the line of its port: who has read that may end it
+    listen_to_signals();  // before the line of its port: who has read that may end it
     std::printf("port %d\n", port);
     std::fflush(stdout);
 

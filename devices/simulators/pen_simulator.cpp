@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     app.add_option("--first-N", first_N, "first response")->capture_default_str();
     app.add_option("--full-N", full_N, "full pressure")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    end_on_signals();
+    listen_to_signals();
     Line<double> line(options);
     const double began_s = steady_s();
     for (double due_s = began_s; ended == 0 && (options.seconds <= 0.0 || due_s - began_s < options.seconds);

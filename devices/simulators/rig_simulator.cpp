@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
         const ActuatorRig rig = read_rig(files::JsonReader(json, file));
         RigWires wires(rig, options);
         TruthFile truth(truth_path);
-        end_on_signals();  // before the line of its port: who has read that may end it
+        listen_to_signals();  // before the line of its port: who has read that may end it
         std::printf("port %s\n", wires.ports().c_str());
         std::fflush(stdout);
         platform::set_real_time(true);

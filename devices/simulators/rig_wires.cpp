@@ -9,11 +9,12 @@
 
 #include "devices/force_sensor.h"
 #include "devices/simulators/sockets.h"
+#include "devices/simulators/stream.h"
 
 namespace palpa::devices::simulators {
 namespace {
 
-volatile std::sig_atomic_t unplug_asked = 0, garbage_asked = 0;
+volatile std::sig_atomic_t garbage_asked = 0;
 
 constexpr double kListens_s = 2.0;   // after "start"
 constexpr double kInRange = 1e-3;    // of a range: counts are whole, and so is what comes back
@@ -82,7 +83,6 @@ RigWires::RigWires(const ActuatorRig& rig, const WiresOptions& options)
     for (std::size_t i = 0; i < line_.size(); ++i) set_up_line(rig, i, options.watchdogs, options.seed, line_[i]);
     if (options.sensor_by_udp) udp_ = open_socket(udp_port_);
     plug(true);
-    std::signal(SIGUSR1, [](int) { unplug_asked = 1; });
     std::signal(SIGUSR2, [](int) { garbage_asked = 1; });
 }
 

@@ -26,7 +26,7 @@ struct StreamOptions {
     double lose = 0.0;   // share of the records
     double duplicate = 0.0;
     double reorder = 0.0;        // swapped with the next
-    double silent_from_s = 0.0;  // unplugged, and plugged in again
+    double silent_from_s = 1e9;  // unplugged then, or at SIGUSR1, and plugged in again
     double silent_s = 0.0;
     std::uint64_t seed = 1;
 };
@@ -48,8 +48,8 @@ inline void add_stream_options(CLI::App& app, StreamOptions& options) {
     app.add_option("--reorder", options.reorder, "swapped with the next")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    app.add_option("--silent-from-s", options.silent_from_s, "unplugged then")->capture_default_str();
-    app.add_option("--silent-s", options.silent_s, "for so long")->capture_default_str();
+    app.add_option("--silent-from-s", options.silent_from_s, "unplugged then, or at SIGUSR1");
+    app.add_option("--silent-s", options.silent_s, "for so long");
     app.add_option("--seed", options.seed)->capture_default_str();
 }
 
@@ -108,14 +108,18 @@ struct Line {
     }
 };
 
-inline volatile std::sig_atomic_t ended = 0;
+inline volatile std::sig_atomic_t ended = 0, unplug_asked = 0;
 
-inline void end_on_signals() {
+// SIGTERM and SIGINT end a simulator, SIGUSR1 unplugs it.
+inline void listen_to_signals() {
     std::signal(SIGTERM, [](int) { ended = 1; });
     std::signal(SIGINT, [](int) { ended = 1; });
+    std::signal(SIGUSR1, [](int) { unplug_asked = 1; });
 }
 
-inline bool silent(const StreamOptions& options, double since_start_s) {
+inline bool silent(StreamOptions& options, double since_start_s) {
+    if (unplug_asked != 0) options.silent_from_s = since_start_s;
+    unplug_asked = 0;
     return options.silent_s > 0.0 && since_start_s >= options.silent_from_s &&
            since_start_s < options.silent_from_s + options.silent_s;
 }

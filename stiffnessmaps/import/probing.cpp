@@ -90,6 +90,27 @@ double normal_force(const files::Table& table, const Columns& columns) {
            value_of(table, columns, Role::force_z) * value_of(table, columns, Role::normal_z);
 }
 
+// Follows how a place is released, and how far the tool then comes back towards the greatest depth.
+void follow_release(double depth_m, ProbedPoint& p) {
+    if (p.depth_m.empty()) return;
+    const double greatest_m = p.depth_m.back();
+    p.lifted_to_m = std::min(p.lifted_to_m, depth_m);
+    p.risen_m = std::max(p.risen_m, std::min(depth_m, greatest_m) - p.lifted_to_m);
+    if (depth_m > greatest_m) p.lifted_to_m = depth_m;
+}
+
+void note_pressed_again(const std::vector<ProbedPoint>& points, ImportReport& report) {
+    const auto again = [](const ProbedPoint& p) {  // noise does not come back by half the press
+        return !p.depth_m.empty() && p.risen_m > 0.5 * (p.depth_m.back() - p.depth_m.front());
+    };
+    const auto first = std::find_if(points.begin(), points.end(), again);
+    if (first == points.end()) return;
+    report.notes.push_back(std::to_string(std::count_if(first, points.end(), again)) + " of " +
+                           std::to_string(points.size()) +
+                           " points were pressed more than once (the first of them begins at line " +
+                           std::to_string(first->line) + "): the first press counts, and of later ones what is deeper");
+}
+
 void need_columns(const Columns& columns, const files::Table& table) {
     need(columns, table, {Role::x, Role::y});
     if (!columns.has(Role::depth) && !columns.has(Role::z)) need(columns, table, {Role::depth});
@@ -142,6 +163,7 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
         }
         const double off_m =
             columns.has(Role::commanded_depth) ? depth_m - value_of(table, columns, Role::commanded_depth) : 0.0;
+        follow_release(depth_m, p);
         const bool moved_on = p.depth_m.empty() || depth_m > p.depth_m.back();
         if (!moved_on || !(std::abs(off_m) < kOffCommand_m)) {
             ++report.rejected_rows;
@@ -159,6 +181,8 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
             std::to_string(report.rejected_rows) + " of " + std::to_string(report.rows) +
             " rows are no deeper than an earlier row of their point, or far from the commanded depth, "
             "and were left out: are the rows in the order in which the points were pressed?");
+    } else {
+        note_pressed_again(probing.points, report);
     }
     report.rejected_rows += not_numbers;
     if (probing.points.empty() || not_numbers == report.rows) {

@@ -125,9 +125,9 @@ int simulate(PlantArguments arguments) {
     TruthFile truth(arguments.truth);
     truth.add(head_of(*device.wires));
     RigWires wires(*device.wires, arguments.wires);
+    devices::simulators::listen_to_signals();  // before the line of its port: who has read that may end it
     std::printf("port %s\n", wires.ports().c_str());
     std::fflush(stdout);
-    devices::simulators::end_on_signals();
     platform::set_real_time(true);
     run(*device.wires, wires, body, truth);
     std::printf("out_of_range %" PRId64 "\n", wires.out_of_range());

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <doctest/doctest.h>
 #include <functional>
+#include <signal.h>
 #include <thread>
 
 #include "devices/load_cell.h"
@@ -109,15 +110,13 @@ TEST_CASE("Net F/T: lost, duplicate and reordered records are counted as the lin
 }
 
 TEST_CASE("Net F/T: a sensor that falls silent is asked again, and goes on") {
-    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR,
-                               {"--rate-Hz", "500", "--silent-from-s", "0.5", "--silent-s", "1.2"});
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "500", "--silent-s", "1.2"});
     std::unique_ptr<SensorReader> reader;
     open_reader(simulator, reader);
-    bool was_gone = false;
-    read_until(*reader, [&](const auto& so_far) {
-        was_gone = was_gone || (so_far.size() > 10 && !reader->health().alive);
-        return was_gone && reader->health().alive;
-    });
+    read_until(*reader, [](const auto& so_far) { return so_far.size() > 10; });
+    ::kill(simulator.pid(), SIGUSR1);  // silent
+    read_until(*reader, [&](const auto&) { return !reader->health().alive; });
+    read_until(*reader, [&](const auto&) { return reader->health().alive; });
     const SensorHealth health = reader->health();
     CHECK(health.stalls == 1);
     CHECK(health.reconnects >= 1);
@@ -183,20 +182,18 @@ TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines"
 TEST_CASE("load cell: unplugged and plugged in again, it goes on by itself") {
     const TemporaryFolder folder;
     const std::string link = (folder / "cell").string();
-    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR,
-                               {"--rate-Hz", "100", "--silent-from-s", "0.8", "--silent-s", "1.0", "--link", link});
+    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "100", "--silent-s", "1", "--link", link});
     LoadCellOptions options;
     options.path = simulator.port();
     options.N_per_count = 1.0 / 40000.0;
     SensorReader reader(open_load_cell(options));
-    bool was_gone = false;
-    const auto all = read_until(reader, [&](const auto& so_far) {
-        was_gone = was_gone || (so_far.size() > 10 && !reader.health().alive);
-        return was_gone && reader.health().alive;
-    });
+    read_until(reader, [](const auto& so_far) { return so_far.size() > 50; });
+    ::kill(simulator.pid(), SIGUSR1);  // unplugged
+    read_until(reader, [&](const auto&) { return !reader.health().alive; });
+    const auto after = read_until(reader, [](const auto& so_far) { return so_far.size() > 10; });
     CHECK(reader.health().reconnects == 1);
     CHECK(reader.health().stalls == 1);
-    CHECK(all.size() > 50);
+    CHECK(after.size() > 10);
     CHECK_THROWS_WITH_AS(open_load_cell({(folder / "none").string(), 115200, 1.0}),
                          doctest::Contains("none: cannot be opened"), std::runtime_error);
     CHECK_THROWS_WITH_AS(open_load_cell({"/dev/null", 115200, 1.0}), doctest::Contains("is not a serial port"),

@@ -36,6 +36,13 @@ TEST_CASE("body file: mesh, element and the material of each cell") {
     CHECK(file.body.mesh.nodes_m.row(2).maxCoeff() == close_to(0.02));
 }
 
+TEST_CASE("body file: a modulus at which displacements would overflow is refused") {
+    Json soft = kColumn;
+    soft["materials"]["gel"]["young_Pa"] = 1e-300;
+    JsonReader reader(soft, "soft.json");
+    CHECK(contains(message_of([&] { read_body(reader, {}); }), "young_Pa: found 1e-300, expected"));
+}
+
 TEST_CASE("body file: supports are added to the problem of the body, and must hold all of it") {
     JsonReader reader(kColumn, "column.json");
     BodyFile file = read_body(reader, {});

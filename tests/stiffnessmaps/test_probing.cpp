@@ -138,6 +138,21 @@ TEST_CASE("probing: rows out of order are told, a release after the press is not
     CHECK(contains(report.notes[0], "30 of 42 rows are no deeper than an earlier row"));
 }
 
+TEST_CASE("probing: a point that was pressed twice is told, and its first press counts") {
+    std::string text = kHeader;
+    const std::vector<int> once{0, 1, 2, 3, 4, 3, 2, 1, 0}, twice{0, 1, 2, 3, 4, 2, 0, 1, 2, 3, 4, 2, 0};
+    for (int p = 0; p < 6; ++p) {
+        int rows = 0;
+        for (const int k : p == 4 ? twice : once)
+            text += row(p, k, 2.0 * (p % 3), 2.0 * (p / 3), k, (++rows > 6 && p == 4 ? 9.0 : 0.1) + 0.5 * k);
+    }
+    ImportReport report;
+    const Map map = imported(text, {}, &report);
+    REQUIRE(report.notes.size() == 1);
+    CHECK(contains(report.notes[0], "1 of 6 points were pressed more than once (the first of them begins at line 38)"));
+    CHECK(map.normal_N[(map.n_depths() - 1) * map.n_cells() + 4] == close_to(2.0f));
+}
+
 TEST_CASE("probing: a row whose depth is far off its command is rejected and counted") {
     std::string text = "point,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n";
     text += "0,0,0,0,0,0\n0,0,0,1,1,1\n0,0,0,2,45,7\n0,0,0,2,2,2\n";

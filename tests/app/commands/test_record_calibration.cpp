@@ -73,7 +73,7 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     const std::string session = (folder / "s").string();
     SimulatorProcess sensor(PALPA_LOAD_CELL_SIMULATOR,
                             {"--rate-Hz", "200", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4",
-                             "--silent-from-s", "8", "--silent-s", "1.5", "--link", (folder / "cell").string()});
+                             "--silent-s", "1.5", "--link", (folder / "cell").string()});
     const std::string serial = " --sensor serial:" + sensor.port() + " --N-per-count 2.5e-5 --levels - --steady-s 0.1 ";
     shell(kPen + "--seconds 8 | timeout -s KILL 7 " PALPA_PROGRAM " calibrate record -o " + session + serial);
     std::string before = read_text(session + "/points.csv");
@@ -87,14 +87,20 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
         before.insert(line + 1, "9");
     write_text_atomically(session + "/points.csv", before);
 
-    // the cell is unplugged and comes back meanwhile; each run needs one lift (4 s at most) for its zero
-    for (int i = 0; i < 100 && !std::filesystem::exists(sensor.port()); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
     const Called other = shell(kRecord + "-o " + session + " --sensor serial:" + sensor.port() +
                                " --N-per-count 1e-3 --levels /dev/null --resume");
     CHECK(other.status == 2);
     CHECK(contains(other.err, "session.json: N_per_count"));
+    // the cell is unplugged for a moment once its readings are written; the run needs one lift (4 s at most) for its zero
+    std::jthread unplugs([&](const std::stop_token& stop) {
+        const std::filesystem::path forces = session + "/forces-02.tsv";
+        while (!stop.stop_requested() &&
+               !(std::filesystem::exists(forces) && std::filesystem::file_size(forces) > 1000))
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        ::kill(sensor.pid(), SIGUSR1);
+    });
     const Called resumed = shell(kPen + "--seconds 12 | " + kRecord + "-o " + session + serial + "--resume --json");
+    unplugs.request_stop();
     CAPTURE(resumed.err);
     REQUIRE(resumed.status == 0);
     const Json json = parse_json(resumed.out, "stdout");

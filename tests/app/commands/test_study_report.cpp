@@ -45,6 +45,25 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     }
 }
 
+TEST_CASE("command study analyse and power: a file of one's own is not replaced, an earlier report is") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "report.md", "mine\n");
+    write_text_atomically(folder / "power.md", "mine\n");
+    const std::string to_folder = " -o " + folder.path().string();
+    const Called report = study("analyse " + kCounts + to_folder);
+    CHECK(report.status == 2);
+    CHECK(contains(report.err, "report.md: found a file that is no earlier result"));
+    const Called power =
+        study("power " PALPA_SOURCE_DIR "/assets/protocols/softer.json --participants 2 --runs 2" + to_folder);
+    CHECK(power.status == 2);
+    CHECK(contains(power.err, "power.md: found a file that is no earlier result"));
+    CHECK(read_text(folder / "report.md") == "mine\n");
+    CHECK(read_text(folder / "power.md") == "mine\n");
+    CHECK_FALSE(fs::exists(folder / "report.json"));
+    fs::remove(folder / "report.md");
+    for (int i = 0; i < 2; ++i) CHECK(study("analyse " + kCounts + to_folder).status == 0);
+}
+
 TEST_CASE("command study analyse: a table of rated marks gives figures of merit, the mixed model and its data") {
     const TemporaryFolder folder;
     std::string rows = "condition\tparticipant\tcase\tkind\tlesion\trating\n";

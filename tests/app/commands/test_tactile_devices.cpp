@@ -73,6 +73,7 @@ TEST_CASE("pins test: a port that is not there is 1, wrong use and two pins on o
 
 TEST_CASE("pins calibrate: simulated pins that differ from the device file are found") {
     const SlabScene slab;
+    files::write_text_atomically(slab.file("new.json.heights.tsv"), "mine\n");
     const Called found =
         slab.tactile("pins calibrate " + kPinsFile + " --simulate --pulses 3 -o " + slab.file("new.json") + " --json");
     REQUIRE(found.status == 0);
@@ -82,6 +83,7 @@ TEST_CASE("pins calibrate: simulated pins that differ from the device file are f
     const devices::PinDevice device = devices::read_pin_device(slab.folder / "new.json");
     CHECK(device.port == "/dev/ttyUSB0");
     CHECK(device.pins[0].zero_us != 1300.0);
+    CHECK(files::read_text(slab.file("new.json.heights.tsv")) == "mine\n");
     CHECK(slab.tactile("pins calibrate " + slab.file("new.json") + " --simulate -o " + slab.file("new.json")).status ==
           2);
 }

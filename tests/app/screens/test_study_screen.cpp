@@ -83,6 +83,21 @@ TEST_CASE("study screen: the first question takes the keys at once, and Enter en
     CHECK_FALSE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
 }
 
+TEST_CASE("study screen: an age that is refused keeps the keys, so that it can be mended at once") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_questions(folder, desk);
+    for (const char digit : {'3', '4', '0'}) type(desk.window, digit);
+    live_frames(desk, 6);
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK(desk.app.view.study.answers.at(0) == "340");
+    tap(desk.window, SDLK_END);
+    tap(desk.window, SDLK_BACKSPACE);
+    live_frames(desk, 6);
+    CHECK(desk.app.view.study.answers.at(0) == "34");
+}
+
 TEST_CASE("study screen: a second Enter after the code does not leave the questions open for good") {
     const TemporaryFolder folder;
     Desk desk("");
