@@ -137,20 +137,25 @@ study::Observations read_observations(const AnalyseOptions& options) {
     return study::read_counts(input, scale);
 }
 
-void analyse(const AnalyseOptions& options) {
-    if (!options.output.empty()) {
-        files::check_output_folder(options.output);
-        refuse_folder_of_logs(options.output);
-        files::check_own_results(options.output, kReport, result_names());
-    }
-    const study::Observations seen = read_observations(options);
-    const study::Report report = study::make_report(seen, options.report);
+// Neither the input nor a file of somebody's own may have the name of a result.
+void check_results(const AnalyseOptions& options) {
     // the logs of a study have fixed names; a table of counts may have any name
-    if (!options.output.empty() && !fs::is_directory(options.input)) {
+    if (!fs::is_directory(options.input)) {
         std::vector<std::string> names = result_names();
         names.push_back(kReport);
         files::check_output_folder(options.output, {options.input}, names);
     }
+    files::check_own_results(options.output, kReport, result_names());
+}
+
+void analyse(const AnalyseOptions& options) {
+    if (!options.output.empty()) {
+        files::check_output_folder(options.output);
+        refuse_folder_of_logs(options.output);
+    }
+    const study::Observations seen = read_observations(options);
+    const study::Report report = study::make_report(seen, options.report);
+    if (!options.output.empty()) check_results(options);
     if (!options.output.empty()) write_report(report, seen, protocol_of(options.input), options.output);
     const std::string text =
         options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);

@@ -250,9 +250,9 @@ TEST_CASE("files: results that are a folder go to no file, FIFO or device") {
 }
 
 TEST_CASE("files: tables of counts are analysed beside themselves only where no table gets their name") {
-    const TemporaryFolder folder;
     const std::string counts = "condition\ttp\tfn\tfp\npen\t5\t1\t0\n";
     for (const std::string name : {"sensitivity.tsv", "report.md", "counts.tsv"}) {
+        const TemporaryFolder folder;
         CAPTURE(name);
         write_text_atomically(folder / name, counts);
         const Called called = palpa_in(folder, "study analyse " + name + " -o .");
