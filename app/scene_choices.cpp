@@ -41,6 +41,23 @@ std::vector<Choice> choices(const char* kind) {
     return out;
 }
 
+// A name without a folder that is not here is one of the choices below, with or without its ending.
+fs::path scene_file(const std::string& name, const fs::path& assets) {
+    const fs::path given(name);
+    if (fs::exists(given)) return given;
+    std::string places;
+    for (const fs::path& root : {assets, user_folder()}) {
+        if (root.empty()) continue;
+        places += (places.empty() ? "" : " or ") + root.string();
+        if (given.has_parent_path()) continue;
+        for (const fs::path& file : {root / "scenes" / given, root / "scenes" / (name + ".json"), root / "maps" / given,
+                                     root / "maps" / (name + ".map")})
+            if (fs::exists(file)) return file;
+    }
+    throw files::bad_input(name, "", "nothing",
+                           "a scene SCENE.json, a map folder, or the name of a scene or map in " + places);
+}
+
 }  // namespace
 
 fs::path user_folder() {
@@ -54,9 +71,8 @@ fs::path user_folder() {
 scene::Scene load_scene(const std::string& name) {
     const fs::path assets = assets_folder();
     if (name.empty()) return scene::read_scene(assets / "scenes" / "default.json", assets);
-    if (fs::is_directory(name)) return scene::scene_of_map(name, assets);
-    if (!fs::exists(name)) throw files::bad_input(name, "", "nothing", "a scene SCENE.json or a map folder");
-    return scene::read_scene(name, assets);
+    const fs::path file = scene_file(name, assets);
+    return fs::is_directory(file) ? scene::scene_of_map(file, assets) : scene::read_scene(file, assets);
 }
 
 std::vector<fs::path> inputs_of(const scene::Scene& scene, const fs::path& trace) {

@@ -14,7 +14,8 @@ struct Choice {
     std::string file;
 };
 
-// "" = the default scene; NAME.json = a scene; a folder = a map with default effects.
+// "" = the default scene; a file = a scene; a folder = a map with default effects. A name alone that is not here is looked
+// for among the shipped scenes and maps, then in the user's data folder.
 scene::Scene load_scene(const std::string& name);
 
 // The files and folders that the scene and the trace (with its sidecar) are read from. No result may be written there.

@@ -148,6 +148,14 @@ double aspect_of(const stiffnessmaps::Map& map) {  // height / width
     return map.spacing_m[1] * static_cast<double>(map.n_y) / (map.spacing_m[0] * static_cast<double>(map.n_x));
 }
 
+// gnuplot draws no image of fewer.
+void check_cells(const stiffnessmaps::Map& map, const char* instead) {
+    constexpr std::size_t kLeast = 4;
+    if (map.n_cells() >= kLeast) return;
+    throw files::bad_input(map.name, "", std::to_string(map.n_x) + " x " + std::to_string(map.n_y) + " places",
+                           "at least 4 for a picture" + std::string(instead));
+}
+
 int clamped(double px) { return static_cast<int>(std::clamp(px, 300.0, 4000.0)); }
 
 }  // namespace
@@ -155,6 +163,7 @@ int clamped(double px) { return static_cast<int>(std::clamp(px, 300.0, 4000.0));
 void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options,
               const std::filesystem::path& file) {
     check_figure(file);
+    if (options.what != PlotWhat::curves) check_cells(map, "; the curves of fewer can be drawn");
     const stiffnessmaps::Field field = stiffnessmaps::make_field(map, {});
     for (const Eigen::Vector2d& p_m : options.at_m) {
         if (stiffnessmaps::place_at(field, p_m).inside) continue;
@@ -232,6 +241,7 @@ void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& det
 
 void plot_difference(const stiffnessmaps::MapDifference& d, const std::filesystem::path& file) {
     check_figure(file);
+    check_cells(d.a, "");
     const std::size_t k = d.a.n_depths() - 1;
     const std::size_t cells = d.a.n_cells();
     const std::string depth = " at " + files::short_number(1e3 * d.a.depths_m[k]) + " mm";

@@ -23,8 +23,8 @@ struct PlotOptions {
     std::optional<double> force_N;
 };
 
-// Throws InputError for another ending than .png, .svg, .pdf and for a place off the map; std::runtime_error if gnuplot
-// is missing or fails.
+// Throws InputError for another ending than .png, .svg, .pdf, for a place off the map, and for fewer than 4 places (except
+// for curves); std::runtime_error if gnuplot is missing or fails.
 void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options,
               const std::filesystem::path& file);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 
+#include "files/sha256.h"
 #include "files/text.h"
 
 namespace palpa::files {
@@ -77,6 +78,10 @@ std::filesystem::path cache_folder() {
         return std::filesystem::path(home) / ".cache" / "palpa";
     }
     return {};
+}
+
+std::uint64_t fingerprint_of(const Json& key) {
+    return std::stoull(sha256_hex(json_text(key)).substr(0, 16), nullptr, 16);
 }
 
 std::filesystem::path cache_file(const std::filesystem::path& folder, std::uint64_t fingerprint) {

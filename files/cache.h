@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "files/json.h"
+
 namespace palpa::files {
 
 using CachedArrays = std::vector<std::vector<double>>;
@@ -18,6 +20,9 @@ using CachedArrays = std::vector<std::vector<double>>;
 // Returns $XDG_CACHE_HOME/palpa, or ~/.cache/palpa; empty if neither variable is an absolute path. A relative
 // XDG_CACHE_HOME is ignored, as the XDG base directory specification requires.
 std::filesystem::path cache_folder();
+
+// Returns the first 64 bits of the SHA-256 of the key's text.
+std::uint64_t fingerprint_of(const Json& key);
 
 // Returns FOLDER/0123456789abcdef.cache.
 std::filesystem::path cache_file(const std::filesystem::path& folder, std::uint64_t fingerprint);

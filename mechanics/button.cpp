@@ -10,7 +10,6 @@
 namespace palpa::mechanics {
 namespace {
 
-constexpr int kCoverTravels = 33;
 constexpr int kTravels = 1025;  // of the table
 
 struct Force {
@@ -18,38 +17,16 @@ struct Force {
     double slope_N_per_m = 0.0;
 };
 
-// The cover's force at equally spaced travels, cubic between them.
-struct CoverTable {
-    double step_m = 0.0;
-    std::vector<Force> at_travel;  // empty: no cover
-    int iterations = 0;
-};
-
-CoverTable cover_table(const Button& button) {
-    CoverTable out;
-    if (!button.cover) return out;
-    const CoverNet net = make_net(*button.cover);
-    out.step_m = button.travel_m / (kCoverTravels - 1);
-    for (int i = 0; i < kCoverTravels; ++i) {
-        const CoverState state = press_cover(net, i * out.step_m);
-        if (!state.converged)
-            throw SolverError(text("no equilibrium of the cover at ", 1e3 * i * out.step_m, " mm"), 0);
-        out.at_travel.push_back({state.force_N, state.slope_N_per_m});
-        out.iterations += state.iterations;
-    }
-    return out;
-}
-
 // Hermite's cubic.
 Force cover_at(const CoverTable& table, double travel_m) {
-    if (table.at_travel.empty()) return {};
+    if (table.force_N.empty()) return {};
     const double place = travel_m / table.step_m;
-    const int i = std::clamp(static_cast<int>(place), 0, kCoverTravels - 2);
-    const double t = place - i, h = table.step_m;
-    const Force &a = table.at_travel[at(i)], &b = table.at_travel[at(i) + 1];
-    const double rise = b.N - a.N, m0 = h * a.slope_N_per_m, m1 = h * b.slope_N_per_m;
+    const std::size_t i = std::min(static_cast<std::size_t>(std::max(place, 0.0)), kCoverTravels - 2);
+    const double t = place - static_cast<double>(i), h = table.step_m;
+    const double from_N = table.force_N[i], rise = table.force_N[i + 1] - from_N;
+    const double m0 = h * table.slope_N_per_m[i], m1 = h * table.slope_N_per_m[i + 1];
     const double c2 = 3.0 * rise - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * rise;
-    return {a.N + t * (m0 + t * (c2 + t * c3)), (m0 + t * (2.0 * c2 + 3.0 * t * c3)) / h};
+    return {from_N + t * (m0 + t * (c2 + t * c3)), (m0 + t * (2.0 * c2 + 3.0 * t * c3)) / h};
 }
 
 Force measured_at(const std::vector<double>& travel_m, const std::vector<double>& force_N, double w) {
@@ -62,7 +39,7 @@ Force measured_at(const std::vector<double>& travel_m, const std::vector<double>
 // Cover and support together.
 struct ButtonModel {
     const Button& button;
-    CoverTable cover;
+    const CoverTable& cover;
 
     Force operator()(double w, bool on, bool release) const {
         Force out = cover_at(cover, w);
@@ -237,9 +214,31 @@ double truss_slope_N_per_m(const TrussSupport& truss, double travel_m) {
     return 2.0 * truss.bar_N_per_m * (1.0 - L0 * a * a / (L * L * L));
 }
 
+CoverTable make_cover_table(const ButtonCover& cover, double travel_m) {
+    check_positive({{"travel", travel_m}});
+    const CoverNet net = make_net(cover);
+    CoverTable out;
+    out.step_m = travel_m / (kCoverTravels - 1);
+    std::vector<double> travels_m;
+    for (std::size_t i = 0; i < kCoverTravels; ++i) travels_m.push_back(static_cast<double>(i) * out.step_m);
+    for (const CoverState& state : press_cover(net, travels_m)) {
+        if (!state.converged)
+            throw SolverError(text("no equilibrium of the cover at ", 1e3 * state.travel_m, " mm"), 0);
+        out.force_N.push_back(state.force_N);
+        out.slope_N_per_m.push_back(state.slope_N_per_m);
+        out.iterations += state.iterations;
+    }
+    return out;
+}
+
 ButtonCurve press_button(const Button& button) {
     check_button(button);
-    const ButtonModel model{button, cover_table(button)};
+    return press_button(button, button.cover ? make_cover_table(*button.cover, button.travel_m) : CoverTable());
+}
+
+ButtonCurve press_button(const Button& button, const CoverTable& cover) {
+    check_button(button);
+    const ButtonModel model{button, cover};
     ButtonCurve curve;
     curve.travel_m = button.travel_m;
     curve.newton_iterations = model.cover.iterations;

@@ -64,12 +64,24 @@ struct ButtonCurve {
     int newton_iterations = 0;          // of the cover, in all
 };
 
-// Computes the curve by travel, so that it passes the snap. The cover is solved at 33 travels, with its slopes; between them
-// cubic. peak and trough are refined beyond the table's steps, to round-off for a truss. Throws MeshError as make_net()
-// does; LoadError for a button with neither cover nor support, sizes that are not > 0, measured forces that make energy or
-// travels that do not ascend from 0, on or off outside the travel, off not before on; SolverError if the cover finds no
-// equilibrium.
-ButtonCurve press_button(const Button& button);
+constexpr std::size_t kCoverTravels = 33;
+
+// A cover's force and its slope at 33 equally spaced travels from 0 to travel_m; between them cubic. Takes about a second with
+// the default spacings, the rest of a curve a millisecond. Throws LoadError for a travel that is not > 0, MeshError as
+// make_net() does, SolverError if the cover finds no equilibrium.
+struct CoverTable {
+    double step_m = 0.0;
+    std::vector<double> force_N, slope_N_per_m;  // empty: no cover
+    int iterations = 0;
+};
+CoverTable make_cover_table(const ButtonCover& cover, double travel_m);
+
+// Computes the curve by travel, so that it passes the snap. `cover`: the table of the button's cover. peak and trough are
+// refined beyond the table's steps, to round-off for a truss. Throws LoadError for a button with neither cover nor support,
+// sizes that are not > 0, measured forces that make energy or travels that do not ascend from 0, on or off outside the
+// travel, off not before on.
+ButtonCurve press_button(const Button& button, const CoverTable& cover);
+ButtonCurve press_button(const Button& button);  // makes the cover's table too
 
 // What a force changes.
 struct ButtonState {

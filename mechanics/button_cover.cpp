@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "mechanics/error.h"
 #include "mechanics/index.h"
@@ -159,18 +160,24 @@ NetTangent tangent_of(const CoverNet& net, const Matrix3Xd& u_m, double travel_m
     return out;
 }
 
+// The factorisation of a net's tangents, which have one pattern.
+struct CoverSolver {
+    SparseCholesky cholesky{SolverKind::eigen};
+    bool analysed = false;
+};
+
 // Factors the tangent with the least shift of its diagonal that makes it positive definite.
-bool factor_shifted(const NetTangent& tangent, SparseCholesky& cholesky) {
+bool factor_shifted(const NetTangent& tangent, CoverSolver& solver) {
     const auto n = tangent.gradient_N.size();
     LowerMatrix K(n, n);
     K.setFromTriplets(tangent.entries.begin(), tangent.entries.end());
     double largest = 0.0;
     for (Eigen::Index i = 0; i < n; ++i) largest = std::max(largest, K.coeff(i, i));
-    cholesky.analyse(K);
+    if (!std::exchange(solver.analysed, true)) solver.cholesky.analyse(K);
     for (double shift = 0.0; shift<10.0 * largest; shift = shift> 0.0 ? 10.0 * shift : 1e-9 * largest) {
         LowerMatrix shifted = K;
         for (Eigen::Index i = 0; i < n; ++i) shifted.coeffRef(i, i) += shift;
-        if (cholesky.try_factor(shifted)) return true;
+        if (solver.cholesky.try_factor(shifted)) return true;
     }
     return false;
 }
@@ -204,6 +211,36 @@ bool take_cover_step(const CoverNet& net, const Eigen::VectorXd& d, double slope
     }
     state.u_m = before;
     return false;
+}
+
+// Newton's method from the shape `start_m`.
+CoverState settle(const CoverNet& net, double travel_m, Matrix3Xd start_m, CoverSolver& solver) {
+    CoverState out;
+    out.travel_m = travel_m;
+    out.u_m = std::move(start_m);
+    out.energy_J = cover_energy_J(net, out.u_m, travel_m);
+    if (travel_m == 0.0 && net.cover.gravity_m_per_s2.isZero()) {
+        out.converged = true;
+        return out;
+    }
+    for (; out.iterations < 100; ++out.iterations) {
+        const NetTangent tangent = tangent_of(net, out.u_m, travel_m);
+        if (!factor_shifted(tangent, solver)) break;
+        const double resolved_N = 4e-15 * net.springs.front().k_N_per_m * net.cover.radius_m;
+        const double residual_N = tangent.gradient_N.cwiseAbs().maxCoeff();
+        if (residual_N <= std::max(1e-10 * tangent.largest_N, resolved_N)) {
+            Eigen::MatrixXd y = tangent.coupling_N_per_m;
+            solver.cholesky.solve(y);
+            out.slope_N_per_m = tangent.cap_N_per_m - tangent.coupling_N_per_m.dot(y.col(0));
+            out.converged = true;
+            break;
+        }
+        Eigen::MatrixXd d = -tangent.gradient_N;
+        solver.cholesky.solve(d);
+        if (!take_cover_step(net, d.col(0), tangent.gradient_N.dot(d.col(0)), out)) break;
+    }
+    out.force_N = cover_force_N(net, out.u_m, travel_m);
+    return out;
 }
 
 }  // namespace
@@ -258,32 +295,19 @@ double cover_force_N(const CoverNet& net, const Matrix3Xd& u_m, double travel_m)
 }
 
 CoverState press_cover(const CoverNet& net, double travel_m) {
-    CoverState out;
-    out.travel_m = travel_m;
-    out.u_m = first_shape(net, travel_m);
-    out.energy_J = cover_energy_J(net, out.u_m, travel_m);
-    if (travel_m == 0.0 && net.cover.gravity_m_per_s2.isZero()) {
-        out.converged = true;
-        return out;
+    CoverSolver solver;
+    return settle(net, travel_m, first_shape(net, travel_m), solver);
+}
+
+std::vector<CoverState> press_cover(const CoverNet& net, const std::vector<double>& travels_m) {
+    CoverSolver solver;
+    std::vector<CoverState> out;
+    for (const double travel_m : travels_m) {
+        const std::size_t n = out.size();
+        Matrix3Xd start_m = first_shape(net, travel_m);
+        if (n >= 3) start_m = 3.0 * (out[n - 1].u_m - out[n - 2].u_m) + out[n - 3].u_m;
+        out.push_back(settle(net, travel_m, std::move(start_m), solver));
     }
-    SparseCholesky cholesky(SolverKind::eigen);
-    for (; out.iterations < 100; ++out.iterations) {
-        const NetTangent tangent = tangent_of(net, out.u_m, travel_m);
-        if (!factor_shifted(tangent, cholesky)) break;
-        const double resolved_N = 4e-15 * net.springs.front().k_N_per_m * net.cover.radius_m;
-        const double residual_N = tangent.gradient_N.cwiseAbs().maxCoeff();
-        if (residual_N <= std::max(1e-10 * tangent.largest_N, resolved_N)) {
-            Eigen::MatrixXd y = tangent.coupling_N_per_m;
-            cholesky.solve(y);
-            out.slope_N_per_m = tangent.cap_N_per_m - tangent.coupling_N_per_m.dot(y.col(0));
-            out.converged = true;
-            break;
-        }
-        Eigen::MatrixXd d = -tangent.gradient_N;
-        cholesky.solve(d);
-        if (!take_cover_step(net, d.col(0), tangent.gradient_N.dot(d.col(0)), out)) break;
-    }
-    out.force_N = cover_force_N(net, out.u_m, travel_m);
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "files/cache.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
@@ -99,6 +100,29 @@ double own_travel_m(const Button& button) {
     return out;
 }
 
+std::uint64_t fingerprint_of(const ButtonCover& c, double travel_m) {
+    constexpr int kVersion = 1;  // of what the cache holds
+    const Eigen::Vector3d& g = c.gravity_m_per_s2;
+    return files::fingerprint_of({"cover", kVersion, c.radius_m, c.cap_radius_m, c.thickness_m, c.young_Pa,
+                                  c.density_kg_per_m3, c.spacings, g.x(), g.y(), g.z(), travel_m});
+}
+
+CoverTable table_of_cover(const Button& button, const std::filesystem::path& cache, std::string& warning) {
+    if (!button.cover) return {};
+    const std::uint64_t key = fingerprint_of(*button.cover, button.travel_m);
+    if (cache.empty()) return make_cover_table(*button.cover, button.travel_m);
+    if (auto known = files::read_cache(cache, key)) {
+        const files::CachedArrays& a = *known;
+        if (a.size() == 3 && a[0].size() == 2 && a[1].size() == kCoverTravels && a[2].size() == kCoverTravels)
+            return {a[0][0], a[1], a[2], static_cast<int>(a[0][1])};
+    }
+    CoverTable table = make_cover_table(*button.cover, button.travel_m);
+    const std::string failed = files::write_cache(
+        cache, key, {{table.step_m, static_cast<double>(table.iterations)}, table.force_N, table.slope_N_per_m});
+    if (!failed.empty()) warning = failed;
+    return table;
+}
+
 }  // namespace
 
 Button read_button(files::JsonReader json, const Part& part) {
@@ -155,9 +179,14 @@ MeasuredSupport read_curve(files::Table& table) {
 }
 
 ButtonCurve button_curve(const Part& part) {
+    std::string none;
+    return button_curve(part, {}, none);
+}
+
+ButtonCurve button_curve(const Part& part, const std::filesystem::path& cache, std::string& warning) {
     if (!part.button) throw files::bad_input(part.file, "button", "no button", "the key button");
     try {
-        return press_button(*part.button);
+        return press_button(*part.button, table_of_cover(*part.button, cache, warning));
     } catch (const MechanicsError& error) {
         throw files::bad_input(part.file, "button", error.what(), "a button that can be pressed (docs/parts.md)");
     }

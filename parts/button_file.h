@@ -19,4 +19,8 @@ mechanics::MeasuredSupport read_curve(files::Table& table);
 // press_button() of the part's button. Throws InputError for a part without one, and what press_button() refuses.
 mechanics::ButtonCurve button_curve(const Part& part);
 
+// The same, with the cover's table from the cache (files/cache.h; empty: no cache) if it is there; else it is left there.
+// `warning`: what write_cache() says, if it says anything.
+mechanics::ButtonCurve button_curve(const Part& part, const std::filesystem::path& cache, std::string& warning);
+
 }  // namespace palpa::parts

@@ -54,16 +54,9 @@ void take_direction(const PartOptions& options, const PartDesign& design, bool f
 }
 
 std::uint64_t fingerprint_of(const PartDesign& design, const parts::ResponseRequest& request) {
-    files::Json key{kVersion,
-                    files::sha256_of_file(design.part.file),
-                    design.runs_sha256,
-                    design.load.name,
-                    parts::name_of(request.method),
-                    request.energy_error,
-                    request.view,
-                    request.cell_m.value_or(0.0)};
-    const std::string hash = files::sha256_hex(files::json_text(key));
-    return std::stoull(hash.substr(0, 16), nullptr, 16);
+    return files::fingerprint_of({kVersion, files::sha256_of_file(design.part.file), design.runs_sha256,
+                                  design.load.name, parts::name_of(request.method), request.energy_error, request.view,
+                                  request.cell_m.value_or(0.0)});
 }
 
 parts::ResponseProgress part_progress(const mechanics::Progress& progress, double from, double share) {
@@ -230,7 +223,7 @@ PartTissue prepare(const PartOptions& options, const Scene& scene, const mechani
         PartDesign& design = tissue.designs[i];
         buttons = buttons || design.part.button;
         if (design.part.button) {
-            design.button = parts::button_curve(design.part);
+            design.button = parts::button_curve(design.part, files::cache_folder(), tissue.cache_warning);
         } else {
             add_responses(options, progress, share * static_cast<double>(i), share, design, tissue);
         }
@@ -269,8 +262,16 @@ void describe(const PartTissue& tissue, const Scene& scene, Plan& plan) {
     plan.area.centre_m = 0.5 * tissue.size_m;
     plan.stations = {};
     if (!tissue.cache_warning.empty()) plan.notes.push_back(tissue.cache_warning);
-    plan.notes.push_back("the parts are simulated: linear elastic, small displacements; materials as their files say");
+    const auto is_button = [](const PartDesign& design) { return design.button.has_value(); };
+    if (!std::all_of(tissue.designs.begin(), tissue.designs.end(), is_button))
+        plan.notes.push_back(
+            "the parts are simulated: linear elastic, small displacements; materials as their files say");
     for (const PartDesign& design : tissue.designs) {
+        if (design.button)
+            plan.notes.push_back(
+                design.part.name +
+                ": a push button answers by the cover and the support that its file names; its shape is "
+                "drawn only");
         for (const std::string& warning : design.part.warnings) plan.notes.push_back(warning);
         if (!design.responses.empty() && !design.responses[tissue.first_method].converged)
             plan.notes.push_back(design.part.name + ": the finite cells did not converge, error of the energy " +

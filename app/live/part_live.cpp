@@ -1,6 +1,8 @@
 // Designs of parts that are changed on the screen: every edit appends an operation to a copy of the part's file, and the
 // tissue is made anew. Beams answer at once; finite cells are computed meanwhile.
 
+#include <algorithm>
+
 #include "app/assets.h"
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
@@ -94,6 +96,12 @@ void keep_names(const fs::path& from, files::Json& part) {
         keep(part["button"]["support"]["curve"]);
 }
 
+// Then nothing is left to compute: their curves answer, whatever the method.
+bool buttons_only(const scene::Plan& plan) {
+    const auto& designs = scene::parts_of(plan.tissue)->designs;
+    return std::all_of(designs.begin(), designs.end(), [](const auto& design) { return design.button.has_value(); });
+}
+
 // Prepares the scene with its designs as they are now: by beams at once where it asks for cells, which follow.
 void show_designs(const scene::Scene& wanted, platform::Window& window, const Gui& gui, App& app) {
     scene::Scene now = wanted;
@@ -114,7 +122,7 @@ void show_designs(const scene::Scene& wanted, platform::Window& window, const Gu
     put_scene(std::move(now), std::move(plan), window, app);
     begin_anew(window, gui, app);
     app.parts.cells.reset();
-    if (!cells) return;
+    if (!cells || buttons_only(*app.session.plan)) return;
     app.parts.wanted = wanted;
     app.parts.cells = std::make_unique<session::PlanInProgress>(wanted);
 }

@@ -164,7 +164,7 @@ void draw_parts(const Shown& shown, const Gui& gui, PartView& view) {
     const scene::ScreenArea& area = shown.state.screen;
     const ImVec2 low(static_cast<float>(area.x_px), static_cast<float>(area.y_px));
     const ImVec2 high(low.x + static_cast<float>(area.width_px), low.y + static_cast<float>(area.height_px));
-    draw.AddRectFilled(low, high, kDark);
+    draw.AddRectFilled(ImVec2(0.0f, 0.0f), ImGui::GetIO().DisplaySize, kDark);  // over the tissue's picture
     draw.PushClipRect(low, high, true);
     for (std::size_t i = 0; i < tissue.designs.size(); ++i) {
         const PartDesign& design = tissue.designs[i];

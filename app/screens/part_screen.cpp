@@ -278,7 +278,11 @@ void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, W
     if (view.pending) paragraph(words::filled(words::kCellsPending, {fixed(100.0 * *view.pending, 0)}));
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
     draw_kept(view);
-    paragraph(words::kSimulatedParts);
+    const auto& designs = scene::parts_of(shown.plan.tissue)->designs;
+    const auto buttons =
+        std::count_if(designs.begin(), designs.end(), [](const auto& d) { return d.button.has_value(); });
+    if (buttons > 0) paragraph(words::kSimulatedButtons);
+    if (static_cast<std::size_t>(buttons) < designs.size()) paragraph(words::kSimulatedParts);
 }
 
 }  // namespace

@@ -79,7 +79,10 @@ render::TissueView tissue_view(const scene::Scene& scene, const scene::State& st
         // the block's front side stands below its surface: both together are in the middle
         out.centre_px.y -= 0.5f * out.px_per_m * out.thickness_m * std::sin(kTilt_rad);
     } else {
-        out.eye_m = to_gl(avatar.p_m);
+        // beside the tissue the eye would see the sides of the block
+        const Eigen::Vector2d half_m = 0.5 * view.area.size_m;
+        const Eigen::Vector2d from_m = avatar.p_m - view.area.centre_m;
+        out.eye_m = to_gl(view.area.centre_m + from_m.cwiseMax(-half_m).cwiseMin(half_m));
         out.eye_per_m = 1.0f / kEye_m;
     }
     out.drag_at_m = to_gl(avatar.p_m);

@@ -74,7 +74,7 @@ inline constexpr const char* kDepth = "Depth";
 inline constexpr const char* kLag = "Lag";
 inline constexpr const char* kDelay = "Delay";
 inline constexpr const char* kPhantom = "Phantom";
-inline constexpr const char* kBeyondKnownDepth = "beyond the measured depth";
+inline constexpr const char* kBeyondKnownDepth = "beyond the known depth";
 inline constexpr const char* kNotMeasuredHere = "not measured here";
 inline constexpr const char* kBeyondLinear = "beyond the linear range";
 inline constexpr const char* kNotSettled = "the contact did not settle";
@@ -289,6 +289,8 @@ inline constexpr const char* kButtonOff = "off";
 inline constexpr const char* kPressesAir = "The pen presses no part";
 inline constexpr const char* kCellsPending = "Finite cells: {} % computed; beams answer meanwhile.";
 inline constexpr const char* kSimulatedParts = "Simulated: linear elastic, small displacements.";
+inline constexpr const char* kSimulatedButtons =
+    "Simulated: a push button answers by its cover and its support. Cuts and swaps change its picture only.";
 
 // force arm and shape display
 inline constexpr const char* kTactile = "Arm and pins";

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "app/assets.h"
+#include "app/scene_choices.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -34,4 +35,15 @@ TEST_CASE(
     CHECK(contains(message, (folder / "x/assets").string()));
     CHECK(contains(message, (folder / "x/bin/share/palpa/assets").string()));
     CHECK(contains(message, "PALPA_ASSETS"));
+}
+
+TEST_CASE("scenes: a name alone is looked for here, then among those that ship; a path is only that path") {
+    CHECK(load_scene("toothbrush").file == assets_folder() / "scenes/toothbrush.json");
+    CHECK(load_scene("toothbrush.json").file == assets_folder() / "scenes/toothbrush.json");
+    const fs::path map = *fs::directory_iterator(assets_folder() / "maps");
+    CHECK(std::get<scene::MapOptions>(load_scene(map.stem().string()).tissue).folder == map);
+    const std::string message = message_of([] { load_scene("toothbrus"); });
+    CHECK(contains(message, "toothbrus: found nothing"));
+    CHECK(contains(message, assets_folder().string()));
+    CHECK(contains(message_of([] { load_scene("scenes/toothbrush.json"); }), "found nothing"));
 }

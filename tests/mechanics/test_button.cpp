@@ -246,3 +246,23 @@ TEST_CASE(
     std::get<LatchSupport>(high.support).threshold_N = 50.0;
     CHECK_THROWS_WITH_AS(press_button(high), doctest::Contains("not reached"), LoadError);
 }
+
+TEST_CASE("button cover: equilibria along a path are those of single travels") {
+    ButtonCover cover = small_cover(10);
+    cover.gravity_m_per_s2 = {0.0, 0.0, 9.80665};
+    const CoverNet net = make_net(cover);
+    const std::vector<double> travels_m{0.0, 0.5e-3, 1e-3, 1.5e-3, 2e-3, 2.5e-3};
+    int alone = 0, path = 0;
+    const std::vector<CoverState> states = press_cover(net, travels_m);
+    REQUIRE(states.size() == travels_m.size());
+    for (std::size_t i = 0; i < travels_m.size(); ++i) {
+        CAPTURE(i);
+        const CoverState single = press_cover(net, travels_m[i]);
+        CHECK(states[i].converged);
+        CHECK(states[i].force_N == close_to(single.force_N).epsilon(1e-8));
+        CHECK(states[i].slope_N_per_m == close_to(single.slope_N_per_m).epsilon(1e-6));
+        alone += single.iterations;
+        path += states[i].iterations;
+    }
+    CHECK(path < alone);
+}

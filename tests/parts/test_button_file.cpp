@@ -105,3 +105,33 @@ TEST_CASE("button file: curves that are no curves name their line") {
     CHECK(contains(refused_curve(header), "at least 2"));
     CHECK(contains(refused_curve("travel_mm\tforce_N\n0\t0\n"), "press_N"));
 }
+
+TEST_CASE("button file: the cover's table is computed once, kept in the cache, and not taken for another cover") {
+    const TemporaryFolder folder;
+    const Json json = button_part();
+    const mechanics::ButtonCurve plain = button_curve(parsed(json));
+    std::string warning;
+    const auto cached = [&](const Json& from) { return button_curve(parsed(from), folder / "c", warning); };
+    const auto files = [&] {
+        const std::filesystem::directory_iterator all(folder / "c");
+        return std::distance(begin(all), end(all));
+    };
+    for (int i = 0; i < 2; ++i) {
+        const mechanics::ButtonCurve curve = cached(json);
+        CHECK(curve.press_N == plain.press_N);
+        CHECK(curve.newton_iterations == plain.newton_iterations);
+        CHECK(files() == 1);
+    }
+    Json harder = json;
+    harder["button"]["support"]["latch"]["stiffness_N_per_m"] = 900;  // the cover stays
+    CHECK(cached(harder).press_N != plain.press_N);
+    CHECK(files() == 1);
+    Json thicker = json;
+    thicker["button"]["cover"]["thickness_mm"] = 1.1;
+    CHECK(cached(thicker).press_N[1].back() == close_to(1.1 * plain.press_N[1].back()).epsilon(1e-3));
+    CHECK(files() == 2);
+    std::filesystem::resize_file(std::filesystem::directory_iterator(folder / "c")->path(), 40);  // damaged
+    CHECK(cached(json).press_N == plain.press_N);
+    CHECK(cached(thicker).press_N[0][500] > plain.press_N[0][500]);
+    CHECK(warning.empty());
+}

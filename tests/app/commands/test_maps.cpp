@@ -206,6 +206,29 @@ TEST_CASE("command maps plot: every figure in every format, whatever the map is 
     CHECK_FALSE(std::filesystem::exists(folder / "b.png"));
 }
 
+TEST_CASE("command maps plot: pictures of fewer than four places are refused, curves are drawn") {
+    const TemporaryFolder folder;
+    Map map;
+    map.name = "tiny";
+    map.n_x = 3;
+    map.n_y = 1;
+    map.depths_m = {1e-3, 2e-3};
+    map.normal_N = {1.0f, 1.1f, 1.2f, 2.0f, 2.2f, 2.4f};
+    write_map(map, folder / "tiny.map");
+    const std::string name = (folder / "tiny.map").string(), figure = (folder / "f.png").string();
+    if (!has_gnuplot()) return;
+    refused("plot " + name + " -o " + figure, "found 3 x 1 places, expected at least 4");
+    refused("compare " + name + " " + name + " -o " + figure, "found 3 x 1 places, expected at least 4");
+    CHECK_FALSE(std::filesystem::exists(figure));
+    CHECK(maps("plot " + name + " --what curves -o " + figure).status == 0);
+    map.n_x = 4;
+    map.normal_N = {1.0f, 1.1f, 1.2f, 1.3f, 2.0f, 2.2f, 2.4f, 2.6f};
+    write_map(map, folder / "row.map");
+    const Called called = maps("plot " + (folder / "row.map").string() + " -o " + figure);
+    CHECK(called.status == 0);
+    CHECK(called.err == "");
+}
+
 TEST_CASE("command maps plot: without gnuplot a message says what is missing") {
     const TemporaryFolder folder;
     small(folder);

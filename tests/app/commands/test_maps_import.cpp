@@ -180,6 +180,7 @@ TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves
     refused("r.csv " + kColumns + "--column where -o n.map", "expected ROLE=NAME");
     refused("r.csv " + kColumns + "--depths-mm 2,1 -o n.map", "expected ascending depths");
     refused("r.csv " + kColumns + "--depths-mm 1,two -o n.map", "--depths-mm: found '1,two'");
+    refused("r.csv " + kColumns + "--depths-mm 1,2,99 -o n.map", "r.csv: found no force 99 mm deep");
     refused("r.csv " + kColumns + "--region-mm 1,2 -o n.map", "--region-mm: found 2 numbers, expected 4");
     refused("r.csv " + kColumns + "--region-mm 100,200,100,200 -o n.map", "in the region");
     refused("r.csv " + kColumns + "--grid hexagons -o n.map", "--grid");

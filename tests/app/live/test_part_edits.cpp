@@ -1,5 +1,6 @@
 // Designs that are changed on the screen of parts: which files hold the changes, and how one goes on with them.
 
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <fstream>
 #include <stdlib.h>
@@ -109,4 +110,25 @@ TEST_CASE("part edits: a second session writes a file of its own, and the first 
     change_part(missed, desk.window, desk.gui, desk.app);
     CHECK(desk.app.notices.note == words::kNothingChanged);
     CHECK(operations_of(home.folder / "bar.json") == 1);
+}
+
+TEST_CASE(
+    "part edits: a push button has no finite cells to wait for, and the screen says that its shape does not answer") {
+    const Home home;
+    Desk desk((fs::path(PALPA_SOURCE_DIR) / "assets/scenes/button.json").string());
+    PartWish cut;
+    cut.kind = PartWish::Kind::edit;
+    cut.path_m = {{0.003, 0.003}};
+    cut.radius_m = 1e-3;
+    change_part(cut, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.notices.problems.empty());
+    CHECK(desk.app.view.part.edits[0] == 1);
+    CHECK(desk.app.parts.cells == nullptr);
+    const auto& notes = desk.app.session.plan->notes;
+    const auto says = [&](const char* what) {
+        return std::any_of(notes.begin(), notes.end(),
+                           [&](const std::string& note) { return note.find(what) != std::string::npos; });
+    };
+    CHECK(says("its shape is drawn only"));
+    CHECK_FALSE(says("linear elastic"));
 }

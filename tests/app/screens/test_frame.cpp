@@ -1,5 +1,6 @@
 // A frame that would look like what is on the screen is not drawn again; whatever changes is. Off screen.
 
+#include <array>
 #include <doctest/doctest.h>
 #include <optional>
 
@@ -108,6 +109,23 @@ TEST_CASE("frame: nothing is drawn while nothing changes, and everything that do
     s.view.on_screen.content = 0;  // the window was uncovered
     CHECK(s.drawn());
     CHECK_FALSE(s.drawn());
+}
+
+TEST_CASE("frame: a pen beside the tissue does not show the block's sides") {
+    Screening s("");
+    const auto beside = [&] {  // just left of the tissue
+        const View& view = s.session.state.view;
+        const double left_px = view.centre_px.x() - 0.5 * view.area.size_m.x() * view.px_per_m;
+        const auto pixels = read_pixels(640, 400);
+        const std::size_t at = 3 * (200 * 640 + static_cast<std::size_t>(left_px - 4.0));
+        return std::array{pixels[at], pixels[at + 1], pixels[at + 2]};
+    };
+    s.press(Phase::hover, 0.5, 0.0);
+    s.drawn();
+    const auto empty = beside();
+    s.press(Phase::hover, 0.0, 0.0);
+    CHECK(s.drawn());
+    CHECK(beside() == empty);
 }
 
 TEST_CASE("frame: an avatar that catches up while the pen rests is drawn") {
