@@ -161,6 +161,24 @@ void note_few_people(Report& report) {
                            ". Bootstrap intervals of so few cover less than they say, and no test can show much");
 }
 
+// The jackknife's error, and so the t test of PPV, does not hold where one condition has far fewer marks than another.
+void note_uneven_marks(Report& report) {
+    constexpr std::int64_t kUneven = 2;
+    if (report.ppv_pairs.empty()) return;
+    const auto marks = [](const ConditionResult& one) { return one.tp + one.fp; };
+    const ConditionResult* most = nullptr;
+    const ConditionResult* fewest = nullptr;
+    for (const ConditionResult& one : report.conditions) {
+        if (marks(one) == 0) continue;
+        if (most == nullptr || marks(one) > marks(*most)) most = &one;
+        if (fewest == nullptr || marks(one) < marks(*fewest)) fewest = &one;
+    }
+    if (most == nullptr || marks(*most) <= kUneven * marks(*fewest)) return;
+    report.notes.push_back("WARNING: " + most->name + " has " + std::to_string(marks(*most)) + " marks, " +
+                           fewest->name + " " + std::to_string(marks(*fewest)) +
+                           ". With so uneven numbers the t test of PPV rejects too often; its permutation does not");
+}
+
 // Adds one row for answers on a scale, or one row for each text that was given.
 void add_ratings(const Answer& like, const std::vector<Answer>& answers, Report& report) {
     std::vector<double> numbers;
@@ -265,6 +283,7 @@ Report make_report(const Observations& given, const ReportOptions& options) {
                                " people the bootstrap and the permutation tests are left out");
     }
     note_few_people(report);
+    note_uneven_marks(report);
     return report;
 }
 

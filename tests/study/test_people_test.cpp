@@ -5,6 +5,7 @@
 
 #include "files/distributions.h"
 #include "files/table.h"
+#include "study/binomial_draw.h"
 #include "study/people_test.h"
 #include "study/random.h"
 #include "tests/close_to.h"
@@ -157,4 +158,31 @@ with open("expected.tsv", "w") as out:
         CHECK(groups.p == close_to(expected.number(3)).epsilon(1e-9));
         CHECK(groups.p_permutation == close_to(expected.number(5)).epsilon(1e-9));
     }
+}
+
+TEST_CASE("people test: with three times the marks under one condition, signs of PPV keep their level and t does not") {
+    constexpr int kStudies = 1000, kPeople = 12;
+    Random random(1);
+    const auto person = [&](double marks) {
+        const std::int64_t n = binomial_draw(30, marks / 30.0, random);
+        return Contribution{binomial_draw(n, 0.8, random), n};
+    };
+    int computed = 0, t = 0, signs = 0;
+    for (int i = 0; i < kStudies; ++i) {
+        People a, b;
+        for (int k = 0; k < kPeople; ++k) {
+            a.emplace_back(person(1.5));
+            b.emplace_back(person(0.5));
+        }
+        const PeopleTest test = compare_people(a, b, Average::pooled, {});
+        if (std::isnan(test.difference)) continue;
+        ++computed;
+        t += test.p < 0.05;
+        signs += test.p_permutation < 0.05;
+    }
+    CAPTURE(t);
+    CAPTURE(signs);
+    REQUIRE(computed > 900);
+    CHECK(signs < 0.05 * computed);
+    CHECK(t > 0.1 * computed);  // what the report warns of
 }

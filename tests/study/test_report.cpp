@@ -154,6 +154,22 @@ TEST_CASE("report: two people with one right answer each give no number without 
     CHECK(contains(report_markdown(make_report(seen, {})), "WARNING: fewer than 10 people: with (2)"));
 }
 
+TEST_CASE("report: more than twice the marks under one condition are warned of") {
+    Observations seen;
+    for (const char* name : {"clear", "vague"}) index_of(name, seen.conditions);
+    for (int person = 0; person < 3; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        seen.rows.push_back({0, person, -1, 0, 2, 1, 0});
+        seen.rows.push_back({1, person, -1, 0, 1, 2, 0});
+    }
+    const auto warns = [&] {
+        return contains(report_markdown(make_report(seen, {})), "WARNING: clear has 7 marks, vague 3");
+    };
+    CHECK_FALSE(warns());  // six and three
+    seen.rows.push_back({0, 0, -1, 1, 1, 0, 0});
+    CHECK(warns());
+}
+
 TEST_CASE("report: a single trial has no standard deviation") {
     Observations seen;
     index_of("a", seen.conditions);
