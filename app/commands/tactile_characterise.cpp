@@ -108,7 +108,8 @@ std::optional<tactile::ArmCompensation> compensation_for(const CharacteriseOptio
     const tactile::CompensationFit fit = identify(options.rig, device, result);
     json["compensation"] = identified_json(fit);
     if (!options.folder.empty())
-        tactile::write_compensation(fit, device.name, std::filesystem::path(options.folder) / "compensation.json");
+        tactile::write_compensation(fit, arm_name(device, options.rig),
+                                    std::filesystem::path(options.folder) / "compensation.json");
     return fit.compensation;
 }
 

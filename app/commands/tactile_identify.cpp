@@ -35,8 +35,11 @@ void identify_arm(const IdentifyOptions& options) {
     const devices::ArmDevice device = rig_device(options.rig, {});
     RigResult result;
     const tactile::CompensationFit fit = identify(options.rig, device, result);
-    tactile::write_compensation(fit, device.name, options.output);
-    if (!options.json) return print_fit(fit);
+    tactile::write_compensation(fit, arm_name(device, options.rig), options.output);
+    if (!options.json) {
+        std::printf("%s\n", files::printable(arm_name(device, options.rig)).c_str());
+        return print_fit(fit);
+    }
     files::Json json = identified_json(fit);
     json["simulated"] = options.rig.simulate;
     json["link"] = link_json(result);
@@ -52,6 +55,10 @@ tactile::CompensationFit identify(const RigOptions& options, const devices::ArmD
     stroke.limits = devices::limits_of(&device, nullptr, device.force_N);
     result = stroke_along(options, device, path, stroke, "identify");
     return tactile::fit_compensation(result.strokes.rows);
+}
+
+std::string arm_name(const devices::ArmDevice& device, const RigOptions& options) {
+    return device.name + (options.simulate ? " (SIMULATED)" : "");
 }
 
 files::Json identified_json(const tactile::CompensationFit& fit) {

@@ -138,7 +138,8 @@ void test_pins(const PinsOptions& options) {
         const bool wants_crc = device.boards[i].address.crc;
         const std::string said = verdict(boards[i], wants_crc);
         json["boards"].push_back(board_json(boards[i]));
-        if (!options.json) std::printf("board %d: %s\n", boards[i].device, said.c_str());
+        if (!options.json)
+            std::printf("%sboard %d: %s\n", options.simulate ? "SIMULATED " : "", boards[i].device, said.c_str());
         if (said != "safe")
             wrong += (wrong.empty() ? "" : "; ") + ("board " + std::to_string(boards[i].device) + ": " + said);
         if (!wants_crc)
@@ -219,6 +220,8 @@ void calibrate_pins(const PinsOptions& options) {
     const devices::PinCalibration found = devices::calibrate(device, measured);
     PinDevice calibrated = found.device;
     calibrated.port = devices::read_pin_device(options.device).port;
+    const std::string simulated = " (SIMULATED)";  // whoever drives real pins with this file shall see it
+    if (options.simulate && !calibrated.name.ends_with(simulated)) calibrated.name += simulated;
     devices::write_pin_device(calibrated, options.output);
     const files::Json json{{"device", options.device},
                            {"simulated", options.simulate},

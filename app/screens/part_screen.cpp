@@ -292,7 +292,7 @@ void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewSta
     const PartWork& work = *scene::part_work_of(shown.state.tissue);
     note_press(shown, work, tissue.designs.size(), view.part);
     if (!layout.controls) {
-        plated_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
+        draw_too_small();
         return;
     }
     draw_curves(shown, layout, view.part, gui);

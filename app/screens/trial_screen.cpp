@@ -305,7 +305,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     if (!layout.controls) {
-        plated_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
+        draw_too_small();
         return;
     }
     begin_panel("trial", layout.controls_px, gui);

@@ -7,6 +7,8 @@
 #include <imgui_internal.h>
 #include <numbers>
 
+#include "app/screens/words.h"
+
 namespace palpa::app {
 
 void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity) {
@@ -235,13 +237,19 @@ void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, f
     }
 }
 
-void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text) {
-    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap_px);
     const float margin_px = 0.2f * ImGui::GetFontSize();
     draw.AddRectFilled(ImVec2(at.x - margin_px, at.y - 0.4f * margin_px),
                        ImVec2(at.x + size.x + margin_px, at.y + size.y + 0.4f * margin_px), IM_COL32(20, 22, 24, 205),
                        margin_px);
-    draw.AddText(at, colour, text.c_str());
+    draw.AddText(nullptr, 0.0f, at, colour, text.c_str(), nullptr, std::max(wrap_px, 0.0f));
+}
+
+void draw_too_small() {
+    const ImVec2 at(4.0f, 4.0f);
+    plated_text(*ImGui::GetForegroundDrawList(), at, kInk, words::kTooSmall,
+                ImGui::GetIO().DisplaySize.x - 2.0f * at.x);
 }
 
 }  // namespace palpa::app

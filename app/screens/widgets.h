@@ -87,7 +87,9 @@ void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, con
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
-// Draws text on a dark plate, so that it can be read on any tissue.
-void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
+// Draws text on a dark plate, so that it can be read on any tissue; in lines of wrap_px at most if that is > 0.
+void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px = -1.0f);
+// Says that the window has no room for controls.
+void draw_too_small();
 
 }  // namespace palpa::app

@@ -246,7 +246,7 @@ inline constexpr const char* kFoundAxis = "nodules found (%)";
 inline constexpr const char* kTrialAxis = "trial";
 inline constexpr const char* kPlay = "Play";
 inline constexpr const char* kHistoryLine = "{}  {}  {}";
-inline constexpr const char* kHistoryNone = "No nodules in this tissue, false positives: {}";
+inline constexpr const char* kHistoryNone = "No nodules, false positives: {}";
 inline constexpr const char* kHistoryFound = "Found {} of {}, false positives: {}";
 
 // parts

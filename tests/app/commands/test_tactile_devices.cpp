@@ -82,6 +82,7 @@ TEST_CASE("pins calibrate: simulated pins that differ from the device file are f
     CHECK(json["error_after_mm"].get<double>() < 0.02);
     const devices::PinDevice device = devices::read_pin_device(slab.folder / "new.json");
     CHECK(device.port == "/dev/ttyUSB0");
+    CHECK(device.name == "6 x 6 pins (SIMULATED)");
     CHECK(device.pins[0].zero_us != 1300.0);
     CHECK(files::read_text(slab.file("new.json.heights.tsv")) == "mine\n");
     CHECK(slab.tactile("pins calibrate " + slab.file("new.json") + " --simulate -o " + slab.file("new.json")).status ==
@@ -172,4 +173,5 @@ TEST_CASE("identify: finds an arm's parameters and writes them") {
     CHECK(json["weight_N"].get<double>() == close_to(0.8 * 9.80665).epsilon(0.01));
     CHECK(json["ripple"]["wavelength_mm"].get<double>() == close_to(12.0).epsilon(0.01));
     CHECK(files::read_json(slab.folder / "c.json")["kind"] == "compensation");
+    CHECK(files::read_json(slab.folder / "c.json")["arm"] == "force arm (SIMULATED)");
 }

@@ -116,7 +116,7 @@ TEST_CASE("words: every word is shown somewhere") {
 TEST_CASE("words: the history counts nodules, and does not count to 0 where there are none") {
     session::KeptTrial trial;
     trial.false_positives = 2;
-    CHECK(found_text(trial) == "No nodules in this tissue, false positives: 2");
+    CHECK(found_text(trial) == "No nodules, false positives: 2");
     trial.nodules.resize(3);
     trial.found = 1;
     CHECK(found_text(trial) == "Found 1 of 3, false positives: 2");
