@@ -304,9 +304,10 @@ std::vector<CoverState> press_cover(const CoverNet& net, const std::vector<doubl
     std::vector<CoverState> out;
     for (const double travel_m : travels_m) {
         const std::size_t n = out.size();
-        Matrix3Xd start_m = first_shape(net, travel_m);
-        if (n >= 3) start_m = 3.0 * (out[n - 1].u_m - out[n - 2].u_m) + out[n - 3].u_m;
-        out.push_back(settle(net, travel_m, std::move(start_m), solver));
+        CoverState state;
+        if (n >= 3) state = settle(net, travel_m, 3.0 * (out[n - 1].u_m - out[n - 2].u_m) + out[n - 3].u_m, solver);
+        if (!state.converged) state = settle(net, travel_m, first_shape(net, travel_m), solver);
+        out.push_back(std::move(state));
     }
     return out;
 }

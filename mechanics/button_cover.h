@@ -63,8 +63,8 @@ double cover_force_N(const CoverNet& net, const Eigen::Matrix3Xd& u_m, double tr
 // damped. At a travel of 0 without gravity all is 0. `converged`: out-of-balance forces below 1e-10 of the largest spring
 // force, or below what doubles resolve.
 CoverState press_cover(const CoverNet& net, double travel_m);
-// The same at equally spaced travels, one after the other: each is sought from the three before it, with one analysis of the
-// tangents' pattern.
+// The same at equally spaced travels, one after the other: each is sought from the three before it, and where that fails
+// from the closed form; with one analysis of the tangents' pattern.
 std::vector<CoverState> press_cover(const CoverNet& net, const std::vector<double>& travels_m);
 
 // Force of a membrane without bending stiffness and with nu = 1/3, clamped at a, pressed by a stiff cap b (N):

@@ -176,7 +176,7 @@ void note_uneven_marks(Report& report) {
     if (most == nullptr || marks(*most) <= kUneven * marks(*fewest)) return;
     report.notes.push_back("WARNING: " + most->name + " has " + std::to_string(marks(*most)) + " marks, " +
                            fewest->name + " " + std::to_string(marks(*fewest)) +
-                           ". With so uneven numbers the t test of PPV rejects too often; its permutation does not");
+                           ". With so uneven numbers the t test of PPV does not keep its level; its permutation does");
 }
 
 // Adds one row for answers on a scale, or one row for each text that was given.

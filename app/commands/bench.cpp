@@ -69,7 +69,8 @@ void add_bench(CLI::App& app) {
     add_bench_visibility(*bench);
     auto options = std::make_shared<TraceOptions>();
     CLI::App* trace = bench->add_subcommand("trace", "Write a trace of a simulated pen that sweeps the tissue");
-    trace->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
+    trace->add_option("SCENE", options->scene,
+                      "scene JSON, map folder or the name of a shipped one (default: the default scene)");
     trace->add_option("-o,--output", options->output, "new trace TRACE.tsv")->required();
     trace->add_option("--rate-Hz", options->raster.rate_Hz, "samples per second (default 120)")
         ->check(CLI::Range(1.0, 1e5));

@@ -83,7 +83,8 @@ void add_tangible_speed(CLI::App& speed) {
 void add_bench_speed(CLI::App& bench) {
     auto options = std::make_shared<SpeedOptions>();
     CLI::App* speed = bench.add_subcommand("speed", "What a sample costs, pressure to avatar, at 1,000 Hz");
-    speed->add_option("SCENES", options->scenes, "scene JSON or map folder (default: six that ship)");
+    speed->add_option("SCENES", options->scenes,
+                      "scene JSON, map folder or the name of a shipped one (default: six that ship)");
     speed->add_option("--seconds", options->seconds, "of input, in each repetition (default 10)")
         ->check(CLI::Range(0.1, 1e4));
     speed->add_option("--repetitions", options->repetitions, "default 5")->check(CLI::Range(1, 1000));

@@ -170,7 +170,8 @@ void add_bench_visibility(CLI::App& bench) {
     auto options = std::make_shared<SeeOptions>();
     CLI::App* command = bench.add_subcommand(
         "visibility", "Which nodules can be seen: compares frames of the app with and without them, pixel by pixel");
-    command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
+    command->add_option("SCENE", options->scene,
+                        "scene JSON, map folder or the name of a shipped one (default: the default scene)");
     command->add_option("--force-N", options->visibility.force_N, "force of the simulated stroke (default 2)")
         ->check(CLI::Range(0.01, 1e3));
     command->add_option("--speed-mm-per-s", options->speed_mm_per_s, "speed of the stroke (default 30)")

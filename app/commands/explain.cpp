@@ -124,7 +124,8 @@ void add_explain(CLI::App& app) {
     auto options = std::make_shared<ExplainOptions>();
     CLI::App* command =
         app.add_subcommand("explain", "Show the plan of a scene: the stages with their fidelity, error and cost");
-    command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
+    command->add_option("SCENE", options->scene,
+                        "scene JSON, map folder or the name of a shipped one (default: the default scene)");
     CLI::Option* measure = command->add_flag("--measure", options->measure,
                                              "replay a trace and print each stage's calls, median time and p99");
     command->add_option("--trace", options->trace, "trace to measure with (default: the shipped trace)")

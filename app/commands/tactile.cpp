@@ -187,7 +187,8 @@ void run_tactile(const TactileOptions& options) {
 void add_tactile_run(CLI::App& tactile) {
     auto options = std::make_shared<TactileOptions>();
     CLI::App* command = tactile.add_subcommand("run", "Press on a scene's tissue with its arm and pins");
-    command->add_option("SCENE", options->scene, "scene JSON with the key tactile")->required();
+    command->add_option("SCENE", options->scene, "scene JSON with the key tactile, or the name of a shipped one")
+        ->required();
     command->add_option("--replay", options->replay,
                         "PRESS.tsv (t_s, x_mm, y_mm, depth_mm or force_N), or the recorded rows of a run");
     command->add_flag("--headless", options->headless, "open no window (as now: this command has none)");

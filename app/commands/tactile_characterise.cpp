@@ -239,7 +239,8 @@ void add_tactile_characterise(CLI::App& tactile) {
     auto options = std::make_shared<CharacteriseOptions>();
     CLI::App* command = tactile.add_subcommand(
         "characterise", "Measure the stiffness that a force arm really renders (docs/tactile.md)");
-    command->add_option("SCENE", options->scene, "scene whose tissue is rendered")->required();
+    command->add_option("SCENE", options->scene, "scene JSON whose tissue is rendered, or the name of a shipped one")
+        ->required();
     add_rig_options(*command, options->rig);
     command->add_option("--stiffness-N-per-mm", options->stiffness_N_per_mm, "to render, separated by commas")
         ->delimiter(',')

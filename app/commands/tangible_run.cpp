@@ -174,7 +174,8 @@ void add_loop_options(CLI::App& command, bool of_scene, std::string& fidelity, s
 void add_tangible_run(CLI::App& tangible) {
     auto arguments = std::make_shared<TangibleRunArguments>();
     CLI::App* command = tangible.add_subcommand("run", "Let a scene's soft device push back as its tissue would");
-    command->add_option("SCENE", arguments->scene, "scene JSON with the key tangible")->required();
+    command->add_option("SCENE", arguments->scene, "scene JSON with the key tangible, or the name of a shipped one")
+        ->required();
     command->add_option("--plant", arguments->plant,
                         "a model in the place of the device: exact, or a plant file (default: the scene's)");
     command->add_option("--port", arguments->ports, "NAME=PATH of a port, instead of the device file's");
