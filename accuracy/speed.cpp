@@ -117,9 +117,10 @@ std::string speed_table(const SpeedRow& unit, const std::vector<SpeedRow>& rows)
     std::string out = unit.what + ": least " + files::short_number(unit.least_us) + " us, median " +
                       files::short_number(unit.median_us) + " us\n";
     for (const SpeedRow& row : rows) {
-        out += row.what + ": a sample least " + files::short_number(row.least_us) + " us (" +
-               files::short_number(row.least_us / unit.least_us) + " units), median " +
-               files::short_number(row.median_us) + " us, p99 " + files::short_number(row.p99_us) + " us (" +
+        out += row.what + ": a sample takes " + files::short_number(row.least_us) + " us on average (" +
+               files::short_number(row.least_us / unit.least_us) + " units; median of " +
+               files::counted(row.repetitions, "repetition") + " " + files::short_number(row.median_us) +
+               " us); single ones, clock included: p99 " + files::short_number(row.p99_us) + " us (" +
                files::short_number(row.p99_us / unit.least_us) + " units)\n";
     }
     return out;

@@ -12,7 +12,8 @@
 
 namespace palpa::accuracy {
 
-// Times over several repetitions in one run; the least is disturbed least by other programs.
+// Times over several repetitions in one run; the least is disturbed least by other programs. Of a scene, `least_us` and
+// `median_us` are of the mean time of a sample in a repetition.
 struct SpeedRow {
     std::string what;
     double least_us = kUnknown;

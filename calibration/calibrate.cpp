@@ -92,12 +92,13 @@ Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, Lev
                         value_N(*curve, range.highest) < 1000.0;
     if (usable) return *curve;
     const std::string model = options.model ? std::string(name_of(*options.model)) : "auto";
-    throw files::bad_input(file, "--model " + model,
+    throw files::bad_input(file, "model " + model,
                            "no rising curve below 1000 N through " + std::to_string(points.level.size()) + " points",
                            "points that determine it (more levels, or another model)");
 }
 
-// A pen whose level never reaches the range would give the curve's lowest or highest force for ever.
+}  // namespace
+
 void check_level(LevelField level, const LevelRange& range, const std::string& file) {
     const std::string found =
         "levels from " + files::short_number(range.lowest) + " to " + files::short_number(range.highest);
@@ -106,8 +107,6 @@ void check_level(LevelField level, const LevelRange& range, const std::string& f
     if (level == LevelField::pressure_raw && range.highest <= 1.0)
         throw files::bad_input(file, "level", found, "counts, as `pressure_raw` has it (from 0 to 1 is `pressure`)");
 }
-
-}  // namespace
 
 Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& options) {
     Calibration out;

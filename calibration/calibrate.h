@@ -54,6 +54,10 @@ struct Calibration {
     std::vector<std::string> warnings;  // in plain words: notes, ends of the range, errors, data
 };
 
+// Throws InputError for levels that cannot be of that field: shares where counts are read would give the curve's lowest force
+// for ever, counts where shares are read its highest. range: of the levels.
+void check_level(LevelField level, const LevelRange& range, const std::string& file);
+
 // Fits a profile. Throws InputError if no curve that rises can be fitted; every number of the curve is finite.
 Calibration calibrate(const CalibrationRows& rows, const CalibrateOptions& options);
 

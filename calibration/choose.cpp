@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace palpa::calibration {
 namespace {
@@ -45,14 +46,19 @@ double log_score(const FitPoints& points, const Eigen::ArrayXd& predicted_N) {
     return -std::log(2.0 * std::max(sum / static_cast<double>(n), 1e-12)) - 1.0 - log_sum / static_cast<double>(n);
 }
 
+// Leaving out a repeat must leave a curve: three levels.
+bool repeats_serve(const FitPoints& points) {
+    const std::set<int> repeats(points.repeat.begin(), points.repeat.end());
+    return repeats.size() > 1 && std::all_of(repeats.begin(), repeats.end(), [&](int repeat) {
+               return distinct_levels(part(points, points.repeat, repeat)) >= 3;
+           });
+}
+
 }  // namespace
 
 std::vector<int> folds_of(const FitPoints& points) {
     const auto n = static_cast<std::size_t>(points.level.size());
-    if (!points.repeat.empty()) {
-        const auto [lowest, highest] = std::minmax_element(points.repeat.begin(), points.repeat.end());
-        if (*lowest != *highest) return points.repeat;
-    }
+    if (!points.repeat.empty() && repeats_serve(points)) return points.repeat;
     const std::size_t folds = n < 10 ? n : 5;
     std::vector<int> fold(n);
     for (std::size_t i = 0; i < n; ++i) fold[i] = static_cast<int>(i % folds);

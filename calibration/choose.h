@@ -14,7 +14,8 @@ struct Candidate {
     ErrorModel error = ErrorModel::newton;  // the error model of the score
 };
 
-// Returns the fold of each point: its repeat if there are at least two, else one of five (for fewer than 10 points, one
+// Returns the fold of each point: its repeat if there are at least two, and three levels are left without any of them; else
+// one of five (for fewer than 10 points, one
 // of its own), in turn along the level.
 std::vector<int> folds_of(const FitPoints& points);
 

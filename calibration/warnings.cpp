@@ -58,8 +58,10 @@ void about_errors(const Calibration& calibration, const Words& words, std::vecto
                       " more force than releasing: the curve lies between the two");
     }
     if (calibration.slips > 0) {
-        out.push_back(std::to_string(calibration.slips) + " of " + std::to_string(calibration.points.level.size()) +
-                      " points are far off the curve (slips?) and count little");
+        out.push_back(
+            std::to_string(calibration.slips) + " of " + std::to_string(calibration.points.level.size()) +
+            " points are far off the curve (slips?) and count " +
+            (calibration.chosen.options.robust == Robust::none ? "in full, as robust weights are off" : "little"));
     }
 }
 

@@ -168,6 +168,12 @@ BodyFile read_body(files::JsonReader& json, const std::filesystem::path& folder)
     BodyFile out;
     const std::vector<Material> materials = read_materials(json, out);
     out.mesh = read_case_mesh(json, folder, out.element);
+    for (std::size_t i = 0; i < out.laws.size(); ++i) {
+        if (out.element != Element::hex8i || out.laws[i] == Law::linear || out.laws[i] == Law::corotational) continue;
+        json.fail("element",
+                  "'hex8i' with materials." + out.materials[i] + " of law " + std::string(name_of(out.laws[i])),
+                  "the law corotational, or another element");
+    }
     read_regions(json, out.materials, out.mesh);
     out.body = {out.mesh.mesh, materials_of_cells(out.mesh.mesh.region, materials)};
     return out;

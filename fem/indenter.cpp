@@ -28,8 +28,8 @@ constexpr int kFrictionSteps = 16;
 constexpr int kFrictionSweeps = 4000;
 constexpr double kForceTolerance = 1e-6;  // with friction, whose sweeps leave an error of 1e-7 of the largest force
 constexpr int kMostPresses = 40;
-constexpr double kNarrowest = 1e-10;  // of the depth: if the bracket is narrower, the force jumps within it
-constexpr double kFewestCells = 4.0;  // across the contact's radius, as docs/fem.md asks for
+constexpr double kNarrowest = 1e-10;         // of the depth: if the bracket is narrower, the force jumps within it
+constexpr double kFewestCells = 4.0 - 1e-9;  // across the contact's radius, as docs/fem.md asks for
 
 struct Pressed {
     Contact contact;
@@ -256,18 +256,35 @@ double reach_m(const Indenter& tool, double depth_m) {
     return std::sqrt(tool.radius_m * std::min(depth_m, tool.radius_m));
 }
 
-enum class Across : std::uint8_t { anywhere, x, y };
-
-// Returns the least distance between a node in contact and another touch node, along one axis or anywhere.
-double spacing_m(const Compliance& c, const Pressed& pressed, Across across) {
+// Returns the least distance between a node in contact and another touch node that lies within 45 degrees of an axis (0 x, 1 y)
+// from there: a mesh may be finer in one direction than in the other.
+double spacing_m(const Compliance& c, const Pressed& pressed, int axis) {
     double least_m = std::numeric_limits<double>::infinity();
     for (const int i : pressed.touch) {
         for (int j = 0; j < c.n_touch; ++j) {
-            const double dx = std::abs(c.position_m(0, i) - c.position_m(0, j));
-            const double dy = std::abs(c.position_m(1, i) - c.position_m(1, j));
-            const double away_m = across == Across::x ? dx : across == Across::y ? dy : std::hypot(dx, dy);
-            if (away_m > 1e-9 * c.thickness_m) least_m = std::min(least_m, away_m);
+            const double along_m = std::abs(c.position_m(axis, i) - c.position_m(axis, j));
+            const double across_m = std::abs(c.position_m(1 - axis, i) - c.position_m(1 - axis, j));
+            const double away_m = std::hypot(along_m, across_m);
+            if (along_m >= across_m && away_m > 1e-9 * c.thickness_m) least_m = std::min(least_m, away_m);
         }
+    }
+    return least_m;
+}
+
+// Returns the least height of the cells that hold a node in contact.
+double height_m(const Mesh& mesh, const std::vector<int>& nodes) {
+    std::vector<char> pressed(static_cast<std::size_t>(mesh.nodes_m.cols()), 0);
+    for (const int node : nodes) pressed[static_cast<std::size_t>(node)] = 1;
+    double least_m = std::numeric_limits<double>::infinity();
+    for (Eigen::Index cell = 0; cell < mesh.cells.cols(); ++cell) {
+        bool in_contact = false;
+        double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
+        for (const int node : mesh.cells.col(cell)) {
+            in_contact = in_contact || pressed[static_cast<std::size_t>(node)] != 0;
+            low_m = std::min(low_m, mesh.nodes_m(2, node));
+            high_m = std::max(high_m, mesh.nodes_m(2, node));
+        }
+        if (in_contact) least_m = std::min(least_m, high_m - low_m);
     }
     return least_m;
 }
@@ -285,10 +302,10 @@ void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model,
     const Faces top = faces_on(model.problem.mesh, model.outer, Side::zmax);
     out.area_m2 = contact_area_m2(top, tributary_area_m2(model.problem.mesh, top), nodes, pressing_N);
     const bool along_y = tool.shape == IndenterShape::cylinder;
-    out.cells_across_radius =
-        reach_m(tool, out.depth_m) / spacing_m(c, pressed, along_y ? Across::x : Across::anywhere);
-    if (along_y && std::isfinite(tool.length_m))
-        out.cells_along_length = tool.length_m / spacing_m(c, pressed, Across::y);
+    const double spacing_x_m = spacing_m(c, pressed, 0), spacing_y_m = spacing_m(c, pressed, 1);
+    out.cells_across_radius = reach_m(tool, out.depth_m) / (along_y ? spacing_x_m : std::max(spacing_x_m, spacing_y_m));
+    out.cells_under_radius = reach_m(tool, out.depth_m) / height_m(model.problem.mesh, nodes);
+    if (along_y && std::isfinite(tool.length_m)) out.cells_along_length = tool.length_m / spacing_y_m;
     if (out.cells_across_radius >= kFewestCells && out.cells_along_length.value_or(kFewestCells) >= kFewestCells)
         return;
     const double d = std::min(out.depth_m, tool.radius_m);
@@ -327,6 +344,11 @@ std::vector<std::string> contact_warnings(const IndenterContact& contact) {
             "the contact's radius spans " + files::short_number(contact.cells_across_radius) +
             " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh around "
             "the tool");
+    }
+    if (contact.nodes > 0 && contact.cells_under_radius < 1.0) {
+        out.push_back("the cells under the contact are " + files::short_number(1.0 / contact.cells_under_radius) +
+                      " times as high as its radius: from 1 on its force is more than 3 % too large; refine the mesh "
+                      "along z");
     }
     if (contact.cells_along_length && *contact.cells_along_length < kFewestCells) {
         out.push_back("the tool's length spans " + files::short_number(*contact.cells_along_length) +

@@ -21,6 +21,7 @@ struct IndenterContact {
     int columns = 0;                           // of the compliance that was computed: its touch nodes
     double seconds = 0.0;                      // that compliance and contact took
     double cells_across_radius = 0.0;          // sqrt(R depth) over the spacing of the nodes in contact
+    double cells_under_radius = 0.0;           // sqrt(R depth) over the height of the cells under them
     std::optional<double> cells_along_length;  // of a cylinder that has ends: its length over that spacing along it
     bool settled = true;
     std::string why_not_settled;  // for people; empty if it settled

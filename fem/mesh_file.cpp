@@ -276,6 +276,8 @@ void with_key(const std::string& file, const std::string& key, const std::string
               const std::function<void()>& call) {
     try {
         call();
+    } catch (const OutOfMemory& error) {
+        throw OutOfMemory(file + ": " + error.what(), error.code);
     } catch (const SolverError& error) {  // the run failed; the input may be right
         throw SolverError(file + ": " + error.what(), error.code);
     } catch (const MechanicsError& error) {

@@ -6,21 +6,13 @@
 #include <stdexcept>
 #include <unistd.h>
 
+#include "files/pieces.h"
 #include "files/text.h"
 
 namespace palpa::files {
 namespace {
 
 constexpr std::size_t kBuffer_bytes = 64 * 1024;
-
-bool write_all(int fd, std::string_view rest) {
-    while (!rest.empty()) {
-        const ssize_t n = ::write(fd, rest.data(), rest.size());
-        if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
-        if (n < 0 && errno != EINTR) return false;
-    }
-    return true;
-}
 
 // A new file survives a power cut only once the entry in its folder is on the disk too.
 bool sync_folder_of(const std::filesystem::path& path) {

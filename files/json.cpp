@@ -121,7 +121,9 @@ double JsonReader::number(std::string_view key, Bounds bounds, double otherwise)
 }
 
 int JsonReader::integer(std::string_view key, int lowest, int highest) {
-    const std::string expected = "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+    const std::string expected =
+        lowest == highest ? std::to_string(lowest)
+                          : "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
     const Json& value = need(key, expected);
     if (!value.is_number()) fail(key, described(value), expected);
     const double number = value.get<double>();

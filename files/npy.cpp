@@ -119,7 +119,8 @@ Layout layout_of(std::string_view text, std::size_t data_bytes, const std::strin
         }
     }
     if (after_key(text, "fortran_order", file).substr(0, 5) != "False") {
-        throw bad_input(file, "fortran_order", "True", "False (C order)");
+        throw bad_input(file, "fortran_order", "True",
+                        "False (C order, as numpy.ascontiguousarray makes it before numpy.save)");
     }
     layout.shape = parse_shape(after_key(text, "shape", file), file);
     layout.count = count_of(layout.shape, file);

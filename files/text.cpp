@@ -1,5 +1,6 @@
 #include "files/text.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -30,35 +31,57 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes
     return text;
 }
 
+bool write_all(int fd, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t n = ::write(fd, text.data(), text.size());
+        if (n > 0) text.remove_prefix(static_cast<std::size_t>(n));
+        if (n == 0 || (n < 0 && errno != EINTR)) return false;
+    }
+    return true;
+}
+
 namespace {
 
 using Pieces = std::initializer_list<std::string_view>;
 
-void write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
+// Opens a file that has no name until give_name(): what a killed run wrote goes with the run. -1 where there is no such file.
+int open_unnamed(const std::filesystem::path& folder) {
+#ifdef O_TMPFILE
+    if (::access("/proc/self/fd", X_OK) == 0)
+        return ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0644);
+#endif
+    return -1;
+}
+
+bool give_name(int fd, const std::filesystem::path& path) {
+    const std::string now = "/proc/self/fd/" + std::to_string(fd);
+    return ::linkat(AT_FDCWD, now.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+}
+
+// Returns false with errno set; then there is no file `path`.
+bool write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
     ::unlink(path.c_str());  // left by a killed run, or a FIFO that somebody put there
-    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (fd < 0) fail_writing(path);
-    for (std::string_view text : pieces) {
-        while (!text.empty()) {
-            const ssize_t n = ::write(fd, text.data(), text.size());
-            if (n < 0 && errno == EINTR) continue;
-            if (n <= 0) {
-                ::close(fd);
-                ::unlink(path.c_str());
-                fail_writing(path);
-            }
-            text.remove_prefix(static_cast<std::size_t>(n));
-        }
-    }
-    const bool synced = !sync || ::fsync(fd) == 0;
-    if (::close(fd) != 0 || !synced) fail_writing(path);
+    int fd = open_unnamed(path.parent_path());
+    const bool unnamed = fd >= 0;
+    if (!unnamed) fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (fd < 0) return false;
+    const auto write = [&](std::string_view text) { return write_all(fd, text); };
+    const bool written = std::all_of(pieces.begin(), pieces.end(), write);
+    const bool whole = written && (!sync || ::fsync(fd) == 0) && (!unnamed || give_name(fd, path));
+    int reason = errno;
+    const bool closed = ::close(fd) == 0;
+    if (whole && closed) return true;
+    if (whole) reason = errno;
+    ::unlink(path.c_str());
+    errno = reason;
+    return false;
 }
 
 void write_and_rename(const std::filesystem::path& name, Pieces pieces, bool sync) {
     const std::filesystem::path path = output_target(name);
     std::filesystem::path aside = path;
     aside += ".part-" + std::to_string(::getpid());
-    write_new(aside, pieces, sync);
+    if (!write_new(aside, pieces, sync)) fail_writing(path);
     if (::rename(aside.c_str(), path.c_str()) != 0) {
         const int reason = errno;
         ::unlink(aside.c_str());

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "mechanics/blas_memory.h"
 #include "mechanics/error.h"
 #include "mechanics/index.h"
 
@@ -122,6 +123,7 @@ BandOrder band_order(const LowerMatrix& A) {
 }
 
 void analyse(const LowerMatrix& A, BandedFactor& factor) {
+    require_blas_memory();
     if (!banded_built_in()) throw SolverError("banded solver asked for, but this build has none; use eigen", 0);
     factor.order = band_order(A);
     const int rows = factor.order.band + 1;

@@ -188,11 +188,20 @@ void fill_patch(const RollingModel& model, const RollingMesh& mesh, const Rollin
     patch.normal_m_per_N.triangularView<Eigen::StrictlyUpper>() = patch.normal_m_per_N.transpose();
 }
 
+void check_settled(const RollingModel& model, const Tool& tool, const Contact& answer) {
+    if (!answer.flags.not_settled || answer.violation_m <= kWorstViolation * tool.pose.depth_m) return;
+    throw SolverError(text("with a friction coefficient of ", model.friction, " the contact at ", 1e3 * tool.pose.x_m,
+                           ", ", 1e3 * tool.pose.y_m, " mm, ", 1e3 * tool.pose.depth_m,
+                           " mm deep does not settle: ", 1e3 * answer.violation_m, " mm of error left"),
+                      0);
+}
+
 }  // namespace
 
 RollingForce force_at(const RollingModel& model, const Compliance& compliance, const Tool& tool, RollingWork& work) {
     if (!(model.friction > 0.0)) {
         press_to_depth(compliance, {&tool, 1}, {}, work.contact, work.answer);
+        check_settled(model, tool, work.answer);
         const ToolForce& f = work.answer.tool[0];
         return {f.normal_N, f.tangential_x_N, f.tangential_y_N, work.answer.energy_J, f.area_m2};
     }
@@ -200,12 +209,7 @@ RollingForce force_at(const RollingModel& model, const Compliance& compliance, c
     for (const bool along_y : {true, false}) {  // along x last, since the rest of the answer belongs to that slide
         const SteadySlide slide{along_y ? Eigen::Vector2d(0.0, 1.0) : Eigen::Vector2d(1.0, 0.0), model.friction};
         slide_steadily(compliance, tool, slide, work.slide, work.answer);
-        if (work.answer.flags.not_settled && work.answer.violation_m > kWorstViolation * tool.pose.depth_m) {
-            throw SolverError(text("sliding: with a friction coefficient of ", model.friction, " the contact at ",
-                                   tool.pose.x_m, ", ", tool.pose.y_m, " m, ", tool.pose.depth_m,
-                                   " m deep does not settle: ", work.answer.violation_m, " m of error left"),
-                              0);
-        }
+        check_settled(model, tool, work.answer);
         const ToolForce& f = work.answer.tool[0];
         (along_y ? out.tangential_y_N : out.tangential_x_N) = along_y ? f.tangential_y_N : f.tangential_x_N;
         out.normal_N = f.normal_N;

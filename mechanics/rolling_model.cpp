@@ -87,8 +87,8 @@ RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness) {
         // so that each row of nodes stands for one of equal cells along the cylinder
         const double cells = std::ceil(model.length_m / mesh.contact_m - 1e-9);
         if (model.length_m < kShortest * mesh.contact_m) {
-            throw LoadError(text("rolling: cylinder of ", model.length_m, " m length; must be at least ",
-                                 kShortest * mesh.contact_m, " m, a quarter of the nodes' spacing under it"));
+            throw LoadError(text("rolling: cylinder of ", 1e3 * model.length_m, " mm length; must be at least ",
+                                 1e3 * kShortest * mesh.contact_m, " mm, a quarter of the nodes' spacing under it"));
         }
         mesh.contact_m = model.length_m / cells;
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mechanics/blas_memory.h"
 #include "mechanics/error.h"
 #include "mechanics/solver_backends.h"
 #include "mechanics/text.h"
@@ -60,6 +61,7 @@ std::mutex& mumps_mutex() {
 }
 
 MumpsFactor::MumpsFactor() {
+    require_blas_memory();
     const std::scoped_lock lock(mumps_mutex());
     openblas_set_num_threads(1);
     id.sym = 1;

@@ -1,8 +1,10 @@
 #include "parts/beam_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "files/text.h"
 #include "mechanics/error.h"
 #include "mechanics/voxel_load.h"
 #include "parts/cell_model.h"
@@ -20,11 +22,18 @@ struct BeamSpan {
     std::string why_not;
 };
 
-double place_of_load_m(const Part& part, const PartLoad& load, std::size_t axis, const FilledBox& box) {
+double middle(const std::array<double, 2>& stretch) { return 0.5 * (stretch[0] + stretch[1]); }
+
+// The part's stretch of the axis over which the load is spread.
+std::array<double, 2> loaded_m(const Part& part, const PartLoad& load, std::size_t axis, const FilledBox& box) {
     const double h = part.voxels.frame.pitch_m;
-    if (!load.face) return load.at_m[axis];
-    if (axis_of(*load.face) != static_cast<int>(axis)) return 0.5 * (box.low[axis] + box.high[axis]) * h;
-    return (is_max(*load.face) ? box.high[axis] : box.low[axis]) * h;
+    const double low_m = box.low[axis] * h, high_m = box.high[axis] * h;
+    if (!load.face) {
+        const double radius_m = 0.5 * load.patch_m, at_m = load.at_m[axis];
+        return {std::max(low_m, at_m - radius_m), std::min(high_m, at_m + radius_m)};
+    }
+    if (axis_of(*load.face) != static_cast<int>(axis)) return {low_m, high_m};
+    return is_max(*load.face) ? std::array{high_m, high_m} : std::array{low_m, low_m};
 }
 
 BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m) {
@@ -36,7 +45,7 @@ BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<d
     const auto axis = static_cast<std::size_t>(*part.axis);
     const FilledBox box = filled_box(part.voxels);
     const double h = part.voxels.frame.pitch_m;
-    const double load_m = load_place_m ? *load_place_m : place_of_load_m(part, load, axis, box);
+    const double load_m = load_place_m ? *load_place_m : middle(loaded_m(part, load, axis, box));
     double low_m = box.low[axis] * h, high_m = box.high[axis] * h;  // of the clamp
     if (support.face) {
         if (axis_of(*support.face) != *part.axis) return unclamped;
@@ -54,6 +63,22 @@ BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<d
     if (load_m > high_m + h) return {high_m, load_m, true, ""};
     if (load_m < low_m - h) return {load_m, low_m, false, ""};
     return {0, 0, true, "the load is at the clamp"};
+}
+
+std::string doubt_of(const Part& part, const PartLoad& load, int bends, double length_m) {
+    const auto axis = static_cast<std::size_t>(*part.axis);
+    const auto third = static_cast<std::size_t>(3 - *part.axis - bends);
+    const double oblique = std::abs(load.direction[third] / load.direction[static_cast<std::size_t>(bends)]);
+    if (oblique > kMostOblique) {
+        return "the load is oblique across the section: its part along " + std::string(1, "xyz"[third]) + ", " +
+               files::short_number(100.0 * oblique) + " % of that along " + std::string(1, "xyz"[bends]) +
+               ", is left out";
+    }
+    const std::array<double, 2> loaded = loaded_m(part, load, axis, filled_box(part.voxels));
+    const double spread = 0.5 * (loaded[1] - loaded[0]) / length_m;
+    if (spread <= kMostSpread) return "";
+    return "the load is spread along the beam over " + files::short_number(2e3 * spread * length_m) +
+           " mm and taken as one force " + files::short_number(1e3 * length_m) + " mm from the clamp";
 }
 
 }  // namespace
@@ -74,6 +99,7 @@ PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<dou
     out.length_m = span.high_m - span.low_m;
     for (const BeamPiece& piece : out.pieces) out.height_m = std::max(out.height_m, piece.height_m);
     out.across = std::abs(load.direction[static_cast<std::size_t>(bends)]);
+    if (!load_place_m) out.doubt = doubt_of(part, load, bends, out.length_m);
     return out;
 }
 

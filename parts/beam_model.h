@@ -17,10 +17,16 @@ struct PartBeam {
     // cosine between the load and the direction in which the beam bends; displacements along the load have its square
     double across = 1.0;
     std::string why_not;  // why the part is no beam; "" if it is one
+    std::string doubt;    // why its answer cannot be trusted all the same; "" if it can
 };
 
 // Beams bend in the direction of the load's largest component. The clamp is one support that holds x, y and z: a side
 // square to the axis, or a box, whose side towards the load counts. load_place_m: along the axis, instead of the load's.
+// Doubts a load that is oblique across the section by more than kMostOblique, and one that is spread along the beam by more
+// than kMostSpread of its distance from the clamp to either side. A load spread by a share k is (1 + k^3 / 5) times as far
+// from where it was as the force in its middle, on a uniform beam.
+inline constexpr double kMostOblique = 0.1;
+inline constexpr double kMostSpread = 0.4;
 PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m = {});
 
 // Stiffness of the torsion spring by which the paper replaces a beam of pieces, force over displacement at the tip, as

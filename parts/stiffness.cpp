@@ -81,6 +81,7 @@ void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     out.displacement_m = tip_m(beam, load, out.method);
     out.stiffness_N_per_m = load.force_N / out.displacement_m;
     const double chord_deg = kDegrees * std::atan(out.displacement_m / beam.length_m);
+    if (!beam.doubt.empty()) out.why_not = beam.doubt;
     if (beam.length_m < kLeastSlenderness * beam.height_m)
         out.why_not = "length over height is " + files::short_number(beam.length_m / beam.height_m) + ", below 5";
     if (chord_deg > kMostChord_deg && out.method != Method::elastica)

@@ -9,7 +9,8 @@ namespace palpa::platform {
 // A serial port, raw 8N1. read() blocks for `wait_s` at most; the class is meant for a thread of its own.
 class SerialPort {
   public:
-    // Throws std::runtime_error with the system's reason, InputError for a baud rate that is not supported.
+    // Throws std::runtime_error with the system's reason, and for a port that another SerialPort has (after a second);
+    // InputError for a baud rate that is not supported.
     SerialPort(const std::string& path, int baud);
     ~SerialPort();
     SerialPort(const SerialPort&) = delete;

@@ -30,8 +30,11 @@ double time_of(const Sample& sample, Timeline& timeline) {
 }  // namespace
 
 bool move_to(const Sample& sample, Timeline& timeline) {
+    // samples of a held button are stamped by the host, so that after a slow frame those of the device itself are behind them
+    const bool goes_on = timeline.has_offset && sample.t_device_s >= timeline.device_s;
     const double t_s = time_of(sample, timeline);
-    if (!std::isfinite(t_s) || (timeline.started && t_s < timeline.now_s - kLate_s)) {
+    const bool behind = timeline.started && t_s < timeline.now_s - kLate_s;
+    if (!std::isfinite(t_s) || (behind && !goes_on)) {
         ++timeline.backwards;
         return false;
     }

@@ -15,7 +15,7 @@ struct Timeline {
     bool has_offset = false;
     double device_s = 0.0;         // device time of the sample before
     std::int64_t backwards = 0;    // samples from the past, not accepted
-    std::int64_t late = 0;         // samples slightly behind others of the same frame, taken at the present time
+    std::int64_t late = 0;         // samples behind others, of a clock that goes on or by a frame at most: taken now
     std::int64_t duplicates = 0;   // samples with the same time as the one before
     std::int64_t clock_jumps = 0;  // the device's clock was set, or another device took over
 };

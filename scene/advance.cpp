@@ -250,7 +250,13 @@ void follow_pointer(const Scene& scene, const Plan& plan, const platform::Sample
     if (state.answered && !touching) state.pointer.reset();
 }
 
-void resize(const Scene& scene, const Plan& plan, const ScreenArea& screen, State& state) {
+ScreenArea area_of(const platform::Sample& resize, const State& state) {
+    return {resize.width_px, resize.height_px, resize.x_px, resize.y_px, state.screen.px_per_m};
+}
+
+}  // namespace
+
+void put_on_screen(const Scene& scene, const Plan& plan, const ScreenArea& screen, State& state) {
     constexpr double kMost_px = 1e6;
     const bool sized =
         screen.width_px >= 1.0 && screen.height_px >= 1.0 && screen.width_px < kMost_px && screen.height_px < kMost_px;
@@ -259,15 +265,9 @@ void resize(const Scene& scene, const Plan& plan, const ScreenArea& screen, Stat
     state.view = make_view(scene.mapping, plan.area, screen);
 }
 
-ScreenArea area_of(const platform::Sample& resize, const State& state) {
-    return {resize.width_px, resize.height_px, resize.x_px, resize.y_px, state.screen.px_per_m};
-}
-
-}  // namespace
-
 State start(const Scene& scene, const Plan& plan, const ScreenArea& screen) {
     State state;
-    resize(scene, plan, screen, state);
+    put_on_screen(scene, plan, screen, state);
     if (scene.display_ratio) state.display_ratio.emplace();
     if (scene.delay) state.delay.emplace();
     state.tissue = make_work(plan.tissue);
@@ -278,7 +278,7 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
     ++state.counters.samples;
     state.answered = false;
     if (sample.phase == platform::Phase::ui) {
-        if (sample.action == platform::Action::resize) resize(scene, plan, area_of(sample, state), state);
+        if (sample.action == platform::Action::resize) put_on_screen(scene, plan, area_of(sample, state), state);
         if (sample.action == platform::Action::method) state.method = next_method(plan.tissue, state.tissue);
         return;
     }

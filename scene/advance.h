@@ -13,6 +13,9 @@ inline constexpr double kGrid_Hz = 240.0;
 // it.
 State start(const Scene& scene, const Plan& plan, const ScreenArea& screen);
 
+// Puts the tissue on another part of the window, as a sample of action `resize` does. Ignores an area that is none.
+void put_on_screen(const Scene& scene, const Plan& plan, const ScreenArea& screen, State& state);
+
 // Takes one sample and moves the state to its time. Before that, the steps of the 240 Hz grid since the last sample are
 // taken; the grid begins with the first sample and goes on whether or not something touches. Of a gap longer than a
 // minute only the last minute is stepped through; the steps before it count as dropped if something touched meanwhile.

@@ -133,6 +133,8 @@ PartOptions read_part_tissue(files::JsonReader json, const fs::path& file, const
     if (!list) json.fail("designs", files::described(designs), "one or two part files");
     for (const files::Json& name : designs) {
         if (!name.is_string()) json.fail("designs", files::described(name), "names of part files");
+        if (name.get_ref<const std::string&>().find('\0') != std::string::npos)
+            json.fail("designs", files::described(name) + " with a zero byte (\\u0000)", "names without it");
         out.designs.push_back(find_file(name.get<std::string>(), file, assets / "parts"));
     }
     out.load = json.text("load", "");

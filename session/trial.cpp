@@ -128,6 +128,8 @@ void observe(const scene::Plan& plan, const platform::Sample& sample, const scen
     if (!trial.began) trial.began_s = trial.now_s = sample.t_host_s;
     trial.began = true;
     trial.now_s = std::max(trial.now_s, sample.t_host_s);
+    // the tissue moves below a pen that stays, so that the pen's way begins anew
+    if (sample.phase == platform::Phase::ui && sample.action == platform::Action::resize) trial.pressing = false;
     if (sample.phase == platform::Phase::ui) return act(sample, state, trial);
     observe_press(plan, sample, state, trial);
 }

@@ -59,7 +59,8 @@ Map analytic_map(const Phantom& phantom) {
     map.source.kind = SourceKind::analytic;
     map.source.how =
         "closed-form stand-in, neither recorded nor simulated: a sphere on a bonded layer (Dimitriadis 2002), a bump "
-        "over each nodule; the modulus of the tissue is assumed";
+        "over each nodule; the modulus of the tissue is " +
+        std::string(phantom.tissue.assumed ? "assumed" : "the phantom's");
     map.source.from = phantom.name;
     map.source.licence = "made by Palpa";
     return map;

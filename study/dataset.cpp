@@ -82,8 +82,9 @@ std::string readme_text(const Protocol& protocol, const StudyKind& kind) {
            ". The layout is that of BIDS 1.8.0, behavioural data without imaging.\n\n"
            "Protocol: version " +
            protocol.version + ", seed " + std::to_string(protocol.seed) + ", SHA-256 " + protocol.sha256 +
-           ". The file `protocol.json` is a copy of it; orders and views of all participants follow from it "
-           "(`palpa study order protocol.json`).\n\n"
+           ". The file `protocol.json` is a copy of it, without the scenes that it names. Orders and views of all "
+           "participants "
+           "follow from protocol and scenes (`palpa study order PROTOCOL.json --participants N`, where these are).\n\n"
            "Conditions:\n\n";
     for (const Condition& one : protocol.conditions) {
         out += "- " + one.id + (one.title.empty() ? "" : " (" + one.title + ")") + ": " + name_of(one.modality) +

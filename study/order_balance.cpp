@@ -61,7 +61,8 @@ int turns_of(const Protocol& protocol, const std::vector<std::size_t>& condition
     return most;
 }
 
-int rows_of(OrderKind order, std::size_t n) {
+int rows_of(OrderKind order, TrialOrder trials, std::size_t n) {
+    if (trials == TrialOrder::shuffled) return 1;  // whatever the order of the conditions
     if (order == OrderKind::latin) return static_cast<int>(n);
     if (order == OrderKind::williams) return static_cast<int>(n % 2 == 0 || n == 1 ? n : 2 * n);
     return 1;
@@ -76,7 +77,7 @@ Imbalance imbalance_of_group(const Protocol& protocol, std::size_t group,
     Counts positions(n, n), followers(n, n), views(n, 8);
     Imbalance out;
     out.group = protocol.groups[group].id;
-    out.full_rounds_of = rows_of(protocol.order, n);
+    out.full_rounds_of = rows_of(protocol.order, protocol.trial_order, n);
     for (const PlannedParticipant& who : people) {
         if (who.group != group) continue;
         ++out.participants;

@@ -15,8 +15,9 @@ struct Imbalance {
     int position = 0;  // greatest minus least count of a condition as the first, second, ... to be tested
     // Greatest minus least count of tests of one condition directly after a test of another. Practice does not count.
     int carry_over = 0;
-    int turns = 0;           // greatest minus least count of a condition's tests in a view
-    int full_rounds_of = 1;  // multiples of this number of people balance positions; 1 for fixed and random orders
+    int turns = 0;  // greatest minus least count of a condition's tests in a view
+    int full_rounds_of =
+        1;  // multiples of this number of people balance positions; 1 for fixed and random orders, and for shuffled trials
 };
 std::vector<Imbalance> imbalance_of(const Protocol& protocol, const std::vector<PlannedParticipant>& people);
 

@@ -99,6 +99,20 @@ struct EstimateMean {
     }
 };
 
+// The estimates of a quantity, by whichever method has them in the most studies: one that has an interval in some studies
+// alone would give a mean over chosen studies.
+EstimateMean most_estimates(const std::map<PowerKey, EstimateMean>& estimates, PowerKey key) {
+    std::get<6>(key).clear();  // the first key of all methods
+    EstimateMean most;
+    for (auto it = estimates.lower_bound(key); it != estimates.end(); ++it) {
+        PowerKey same = it->first;
+        std::get<6>(same).clear();
+        if (same != key) break;
+        if (it->second.n > most.n) most = it->second;
+    }
+    return most;
+}
+
 // Else an interval alone.
 bool is_test(const Finding& finding) {
     return finding.method != "bootstrap" && finding.method != "Wilson" &&
@@ -182,7 +196,7 @@ std::vector<PowerResult> summarise_power(const std::vector<PowerRow>& rows, std:
     for (PowerResult& result : results) {
         const PowerRow probe{result.effect, result.noise, result.participants, result.what};
         result.mean_estimate = estimates[power_key(probe, result.participants)].mean();
-        set_truth(result.what, result.effect, estimates[power_key(probe, most)], result);
+        set_truth(result.what, result.effect, most_estimates(estimates, power_key(probe, most)), result);
     }
     for (const PowerRow& row : rows) {
         PowerResult& result = results[places[power_key(row, row.participants)]];

@@ -133,8 +133,8 @@ std::string analysis_part(const Protocol& protocol) {
             sheet_row("several marks on one nodule", "one hit; the highest confidence counts as its rating") +
             sheet_row(
                 "free response",
-                "wAFROC, where there are as many cases without lesions as with, else wAFROC1; people and cases random "
-                "(Obuchowski and Rockette, jackknife)") +
+                "wAFROC1, since each condition has one tissue, with nodules; people and cases random (Obuchowski and "
+                "Rockette, jackknife)") +
             sheet_row("nodules as a sample",
                       "mixed logistic model with people and nodules crossed, likelihood-ratio test");
     }

@@ -122,7 +122,7 @@ class Subject {
         const PlannedParticipant plan = plan_participant(*study_.protocol, number);
         const bool same_orders = study_.identity->orders_version == kOrdersVersion;
         const auto person = study_.people.find(code_);
-        if (known && same_orders && study_.protocol->groups.size() > 1 && person != study_.people.end())
+        if (known && same_orders && person != study_.people.end())
             check_group(study_.directory, code_, person->second, study_.protocol->groups[plan.group].id);
         if (last_trial_ > static_cast<int>(plan.trials.size())) {
             throw files::bad_input(text(last_place_), "trial", std::to_string(last_trial_),
@@ -362,6 +362,12 @@ Observations read_study(const fs::path& directory) {
     const auto uncounted = out.interrupted_trials + out.practice_trials + out.excluded_trials;
     if (out.rows.empty() && out.stiffer.empty() && uncounted == 0) {
         throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
+    }
+    if (!study.identity && !study.sha256.empty() && !fs::exists(directory / "protocol.json")) {
+        out.notes.push_back(
+            directory.string() +
+            ": study.json and protocol.json are not there, though settings name a protocol; the logs cannot be "
+            "compared with the plan");
     }
     take_groups(people, out);
     if (study.protocol) {

@@ -91,7 +91,10 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
     form.item("6", "who could take part");
     form.item("7", "how participants were found");
     form.item("8", "where and when (places, dates)",
-              "dates are in ..._performance.json of each trial; places: " + kToFillIn);
+              "dates are in ..._performance.json of each trial on the screen, but of trials by hand and of choices "
+              "there are none; "
+              "places: " +
+                  kToFillIn);
     form.item("9", "consecutive, random or convenience series");
     form.item("10a", "index test, so that it can be repeated", index_tests(protocol));
     form.item(
@@ -127,7 +130,8 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
 void stard_results(const Report& report, StardForm& form) {
     form.section("Results");
     form.item("19", "flow of participants, with a diagram", stard_flow(report));
-    form.item("20", "who they were", "participants.tsv and ratings.tsv; summary: " + kToFillIn);
+    form.item("20", "who they were",
+              "participants.tsv, and ratings.tsv where questions were asked; summary: " + kToFillIn);
     form.item("21a", "how severe the target condition was",
               "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
     form.item("21b", "what else was there in those without it");

@@ -12,6 +12,7 @@
 #include "devices/pins.h"
 #include "mechanics/pin_shape.h"
 #include "scene/plan.h"
+#include "scene/stage_text.h"
 #include "tactile/arm_compensation.h"
 #include "tactile/pin_estimate.h"
 #include "tactile/renderer.h"
@@ -21,15 +22,6 @@ namespace palpa::tactile {
 
 // What the input brings: how deep the finger is, or how hard it presses.
 enum class InputKind { depth, force };
-
-// One line of `palpa explain`: what runs, how, how wrong it is, and what it costs.
-struct StageText {
-    std::string name;
-    std::string per;  // step, frame or start
-    std::string fidelity;
-    std::string error;
-    double cost_us = 0.0;
-};
 
 struct TactilePlan {
     scene::TactileOptions options;
@@ -47,7 +39,7 @@ struct TactilePlan {
     // The force at which the display's stroke is used up in the middle of the tissue; infinity if it is not at the limit.
     double stroke_used_up_N = std::numeric_limits<double>::infinity();
     double stiffness_N_per_m = 0.0;  // there
-    std::vector<StageText> stages;
+    std::vector<scene::StageText> stages;
     std::vector<std::string> notes;
 };
 
@@ -71,7 +63,7 @@ void make_table_meanwhile(const std::filesystem::path& cache, TactilePlan& plan)
 const Table* table_of(const TactilePlan& plan) noexcept;
 
 // The stages of arm and display, in order, for `palpa explain`. `tissue`: what the finger presses on, for people.
-std::vector<StageText> stages_of(const TactilePlan& plan, const std::string& tissue);
+std::vector<scene::StageText> stages_of(const TactilePlan& plan, const std::string& tissue);
 
 // What is asked of whom, for people: "low-impedance arm: depth in, force out; shape display: stress in, shape out".
 std::string pairing_text(const scene::TactileOptions& options);

@@ -25,11 +25,11 @@ std::string contact_text(const TactilePlan& plan) {
     return "";
 }
 
-StageText finger_stage(const TactilePlan& plan, const std::string& tissue) {
+scene::StageText finger_stage(const TactilePlan& plan, const std::string& tissue) {
     const bool high = plan.input == InputKind::force;
     const char* direction = high ? "; force in, depth out" : "; depth in, force out";
-    StageText stage{"finger", "step", contact_text(plan) + ", on " + tissue + direction,
-                    "that of the tissue (docs/tactile.md)", 0.0};
+    scene::StageText stage{"finger", "step", contact_text(plan) + ", on " + tissue + direction,
+                           "that of the tissue (docs/tactile.md)", 0.0};
     if (plan.options.table) {
         const scene::FingerTableOptions& table = *plan.options.table;
         stage.fidelity += "; from a table that begins at " + in_mm(table.spacing_m);
@@ -42,12 +42,12 @@ StageText finger_stage(const TactilePlan& plan, const std::string& tissue) {
     return stage;
 }
 
-StageText hold_stage(const TactilePlan& plan) {
+scene::StageText hold_stage(const TactilePlan& plan) {
     return {"force limit", "step", "above " + short_number(plan.options.force_limit_N) + " N force and shape hold",
             "exact", 0.0};
 }
 
-StageText shape_stage(const TactilePlan& plan) {
+scene::StageText shape_stage(const TactilePlan& plan) {
     const mechanics::PinShape& pins = *plan.pins;
     const scene::DisplayOptions& display = *plan.options.display;
     std::string fidelity = std::to_string(pins.grid.rows) + " x " + std::to_string(pins.grid.columns) + " pins every " +
@@ -63,7 +63,7 @@ StageText shape_stage(const TactilePlan& plan) {
             in_mm(0.5 * pins.grid.step_m) + " of rounding to steps of " + in_mm(pins.grid.step_m), 1.0};
 }
 
-StageText schedule_stage(const TactilePlan& plan) {
+scene::StageText schedule_stage(const TactilePlan& plan) {
     switch (plan.options.display->schedule) {
         case scene::PinSchedule::free:
             return {"schedule", "step", "the shape of now", "the pins lag by a frame and the servo", 0.0};
@@ -76,16 +76,18 @@ StageText schedule_stage(const TactilePlan& plan) {
     return {};
 }
 
-StageText pressure_stage() { return {"pressure display", "frame", "drawn and logged only", "that of the finger", 0.0}; }
+scene::StageText pressure_stage() {
+    return {"pressure display", "frame", "drawn and logged only", "that of the finger", 0.0};
+}
 
-StageText guard_stage() {
+scene::StageText guard_stage() {
     return {"guard", "step", "range, slew, silence of 100 ms, stop: between the loop and the wire", "exact", 0.1};
 }
 
 }  // namespace
 
-std::vector<StageText> stages_of(const TactilePlan& plan, const std::string& tissue) {
-    std::vector<StageText> out{finger_stage(plan, tissue), hold_stage(plan)};
+std::vector<scene::StageText> stages_of(const TactilePlan& plan, const std::string& tissue) {
+    std::vector<scene::StageText> out{finger_stage(plan, tissue), hold_stage(plan)};
     if (plan.pins) {
         out.push_back(shape_stage(plan));
         out.push_back(schedule_stage(plan));

@@ -7,6 +7,7 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
+#include "mechanics/blas_memory.h"
 #include "mechanics/error.h"
 #include "tangible/actuators.h"
 #include "tangible/bearings.h"
@@ -166,6 +167,7 @@ double cell_volume_m3(const DeviceModel& model, Index cell) {
 }
 
 DeviceModel make_device_model(const SoftDevice& device) {
+    mechanics::require_blas_memory();
     DeviceModel model;
     model.device = device;
     const Mesh& mesh = device.body.body.mesh;

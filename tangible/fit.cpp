@@ -117,9 +117,14 @@ std::vector<RecordedTick> used_ticks(const std::vector<RecordedTick>& ticks, std
         std::minmax_element(in_contact.begin(), in_contact.end(),
                             [](const RecordedTick& a, const RecordedTick& b) { return a.depth_m < b.depth_m; });
     if (deepest->depth_m - least->depth_m < kLeastTravel_m)
-        throw std::runtime_error("the presses stay at a depth of " + files::short_number(1e3 * least->depth_m) +
-                                 " mm, expected presses that go in and out by " +
+        throw std::runtime_error("the presses stay between " + files::short_number(1e3 * least->depth_m) + " and " +
+                                 files::short_number(1e3 * deepest->depth_m) +
+                                 " mm deep, expected presses that go in and out by " +
                                  files::short_number(1e3 * kLeastTravel_m) + " mm at least");
+    if (deepest->depth_m < 0.5 * kLeastTravel_m)
+        throw std::runtime_error("the presses are between " + files::short_number(1e3 * least->depth_m) + " and " +
+                                 files::short_number(1e3 * deepest->depth_m) +
+                                 " mm deep, expected depths into the device, which are positive");
     const std::size_t every = (in_contact.size() + most - 1) / most;
     std::vector<RecordedTick> out{ticks.front()};
     for (std::size_t i = 0; i < in_contact.size(); i += every) out.push_back(in_contact[i]);

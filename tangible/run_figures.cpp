@@ -15,7 +15,7 @@ void add(const TangibleCommand& tick, double rendered_N, TickFigures& figures) {
         ++figures.faults[static_cast<std::size_t>(tick.fault)];
     figures.last = tick.fault;
     figures.greatest_wanted_N = std::max(figures.greatest_wanted_N, tick.wanted_N);
-    if (!std::isfinite(rendered_N)) return;
+    if (!std::isfinite(rendered_N) || !tick.pressed) return;  // else the figure would say how long nobody pressed
     ++figures.compared_ticks;
     figures.squares_N2 += (rendered_N - tick.wanted_N) * (rendered_N - tick.wanted_N);
 }

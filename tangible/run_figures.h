@@ -18,7 +18,7 @@ struct TickFigures {
     std::int64_t saturated_ticks = 0;
     std::int64_t held_ticks = 0;
     std::int64_t relaxed_ticks = 0;
-    std::int64_t compared_ticks = 0;  // with a rendered force
+    std::int64_t compared_ticks = 0;  // pressed, and with a rendered force
     double greatest_wanted_N = 0.0;
     double squares_N2 = 0.0;                         // of rendered minus wanted
     std::array<std::int64_t, kTickFaults> faults{};  // how often each began

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
 #include "app/scene_choices.h"
 #include "files/input_error.h"
 #include "files/progress_line.h"
@@ -37,6 +38,7 @@ void write_raster(const TraceOptions& options) {
     session::RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
     const scene::Plan plan = session::make_plan_here(scene);
+    check_force_N(raster.force_N, scene, plan.profile);
     std::size_t samples = 0;
     bool whole = false;
     {

@@ -10,6 +10,7 @@
 #include "accuracy/image_motion.h"
 #include "accuracy/visibility.h"
 #include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
 #include "files/input_error.h"
@@ -126,15 +127,6 @@ accuracy::Seen see(const accuracy::Stroke& stroke, Observer& observer) {
     return seen;
 }
 
-void check_force(double force_N, const scene::Scene& scene, const calibration::Profile& profile) {
-    std::int64_t clamped = 0;
-    const double most_N = scene.force_scale * calibration::force_N(profile, profile.level_highest, clamped);
-    if (force_N <= most_N) return;
-    throw files::bad_input(
-        "--force-N", "", files::short_number(force_N),
-        "at most " + files::short_number(most_N) + ", the greatest force of the profile " + profile.id);
-}
-
 void run_visibility(SeeOptions options) {
     options.visibility.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
     options.visibility.distance_m = 1e-2 * options.distance_cm;
@@ -149,7 +141,9 @@ void run_visibility(SeeOptions options) {
     leave_out_nodules(plain.tissue);
     put_tissue(scene, observer.sides[0]);
     const scene::Plan& plan = *observer.sides[0].session.plan;
-    check_force(options.visibility.force_N, scene, plan.profile);
+    check_force_N(options.visibility.force_N, scene, plan.profile);
+    if (plan.nodules.empty())
+        throw files::bad_input(scene.name, "", "a tissue without nodules", "one with nodules, to be seen or not");
     put_tissue(plain, observer.sides[1]);
     for (Side& side : observer.sides) begin_stroke(observer, side);
     std::vector<accuracy::Seen> seen;

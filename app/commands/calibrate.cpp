@@ -204,6 +204,7 @@ void check(const CheckArguments& arguments) {
     const calibration::LevelRange range{profile.level_lowest, profile.level_highest};
     const auto n = static_cast<Eigen::Index>(rows.level.size());
     const Eigen::Map<const Eigen::ArrayXd> level(rows.level.data(), n);
+    if (n > 0) calibration::check_level(profile.level, {level.minCoeff(), level.maxCoeff()}, arguments.data);
     const Eigen::Map<const Eigen::ArrayXd> measured_N(rows.force_N.data(), n);
     std::int64_t clamped = 0;
     const Eigen::ArrayXd predicted_N = Eigen::ArrayXd::NullaryExpr(

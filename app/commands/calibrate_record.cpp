@@ -96,6 +96,9 @@ void record(RecordArguments& arguments) {
         print_recorded(arguments, result);
     }
     if (silent) throw std::runtime_error(record.sensor + ": it sent nothing");
+    if (result["points"] == 0)
+        throw std::runtime_error(record.folder +
+                                 ": no point was recorded, which takes a level held still and its force");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <new>
 #include <signal.h>
 #include <string>
+#include <sys/resource.h>
 #include <system_error>
 #include <unistd.h>
 #include <vector>
@@ -66,6 +67,19 @@ void keep_standard_streams_apart() {
     std::_Exit(1);
 }
 
+// Functions of a loop do not throw; where one of them gets no memory for its first use, the program ends here.
+[[noreturn]] void end_on_terminate() {
+    try {
+        if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+        end_without_memory("not enough memory");
+    } catch (const std::exception& error) {
+        fail(error.what(), 1);
+    } catch (...) {
+    }
+    std::abort();
+}
+
 int call(int argc, char** argv, CLI::App& app) {
     try {
         app.parse(with_default_command(argc, argv, app));
@@ -99,11 +113,22 @@ int with_all_printed(int status) {
     return status != 0 ? status : failed;
 }
 
+// In a limited address space a thread of OpenBLAS may ask for its memory for ever, and the end of the process would wait for it.
+int ended(int status) {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return status;
+    std::fflush(nullptr);
+    std::_Exit(status);
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
     keep_standard_streams_apart();
-    ::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as any output that cannot be written
+    std::set_terminate(end_on_terminate);
+    // a closed pipe, and a file that may grow no more, are reported as any output that cannot be written
+    ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.",
                  "palpa");
     app.set_version_flag("--version", "palpa " PALPA_VERSION);
@@ -123,7 +148,7 @@ int run_command_line(int argc, char** argv) {
 #endif
     add_bench(app);
     refuse_what_is_no_value(app);
-    return with_all_printed(call(argc, argv, app));
+    return ended(with_all_printed(call(argc, argv, app)));
 }
 
 }  // namespace palpa::app

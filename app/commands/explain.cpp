@@ -8,10 +8,14 @@
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
+#include "files/printable.h"
 #include "scene/plan.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 #include "tactile/plan.h"
+#ifdef PALPA_TANGIBLE
+#include "tangible/stages.h"
+#endif
 
 namespace palpa::app {
 namespace {
@@ -42,29 +46,52 @@ void print_stage(const scene::Stage& stage, const scene::Meter* meter) {
     std::printf("    %s\n    error: %s\n", stage.fidelity.c_str(), stage.error.c_str());
 }
 
-files::Json tactile_json(const tactile::TactilePlan& plan) {
-    files::Json json{
-        {"pairing", tactile::pairing_text(plan.options)},
-        {"stiffness_N_per_mm", 1e-3 * plan.stiffness_N_per_m},
-        {"stroke_used_up_N", plan.pins ? files::number_or_null(plan.stroke_used_up_N) : files::Json(nullptr)},
-        {"stages", files::Json::array()}};
-    for (const tactile::StageText& stage : plan.stages) {
-        json["stages"].push_back({{"name", stage.name},
-                                  {"per", stage.per},
-                                  {"fidelity", stage.fidelity},
-                                  {"error", stage.error},
-                                  {"cost_us", stage.cost_us}});
+files::Json device_stages_json(const std::vector<scene::StageText>& stages) {
+    files::Json out = files::Json::array();
+    for (const scene::StageText& stage : stages) {
+        out.push_back({{"name", stage.name},
+                       {"per", stage.per},
+                       {"fidelity", stage.fidelity},
+                       {"error", stage.error},
+                       {"cost_us", stage.cost_us}});
     }
-    return json;
+    return out;
 }
 
-void print_tactile_stages(const tactile::TactilePlan& plan) {
-    std::printf("%s\n", tactile::pairing_text(plan.options).c_str());
-    for (const tactile::StageText& stage : plan.stages) {
-        std::printf("%-14s per %-6s  about %g us\n    %s\n    error: %s\n", stage.name.c_str(), stage.per.c_str(),
+files::Json tactile_json(const tactile::TactilePlan& plan) {
+    return {{"pairing", tactile::pairing_text(plan.options)},
+            {"stiffness_N_per_mm", 1e-3 * plan.stiffness_N_per_m},
+            {"stroke_used_up_N", plan.pins ? files::number_or_null(plan.stroke_used_up_N) : files::Json(nullptr)},
+            {"stages", device_stages_json(plan.stages)}};
+}
+
+void print_device_stages(const std::string& title, const std::vector<scene::StageText>& stages) {
+    std::printf("%s\n", title.c_str());
+    for (const scene::StageText& stage : stages) {
+        std::printf("%-14s per %-6s  about %.3g us\n    %s\n    error: %s\n", stage.name.c_str(), stage.per.c_str(),
                     stage.cost_us, stage.fidelity.c_str(), stage.error.c_str());
     }
 }
+
+#ifdef PALPA_TANGIBLE
+// The soft device of a scene; what a tick costs is measured here and now.
+void explain_soft_device(const scene::Scene& scene, const scene::Plan& plan, bool as_json, files::Json& json,
+                         std::vector<std::string>& notes) {
+    const tangible::TangiblePlan device = tangible::make_tangible_plan(scene, plan);
+    const std::vector<scene::StageText> stages = tangible::stages_of(device, tangible::median_tick_us(device));
+    const std::string& name = device.model->device.name;
+    json["tangible"] = {{"device", name}, {"stages", device_stages_json(stages)}};
+    if (!as_json) print_device_stages("soft device " + files::printable(name), stages);
+    notes.insert(notes.end(), device.notes.begin(), device.notes.end());
+    json["notes"] = notes;
+}
+#else
+void explain_soft_device(const scene::Scene&, const scene::Plan&, bool, files::Json& json,
+                         std::vector<std::string>& notes) {
+    notes.push_back("the scene drives a soft device, which this build leaves out");
+    json["notes"] = notes;
+}
+#endif
 
 // Every sample is timed.
 void measure(const platform::Trace& trace, session::Session& session) {
@@ -107,8 +134,9 @@ void explain(const ExplainOptions& options) {
     }
     if (arm_and_pins) {
         json["tactile"] = tactile_json(*arm_and_pins);
-        if (!options.json) print_tactile_stages(*arm_and_pins);
+        if (!options.json) print_device_stages(tactile::pairing_text(arm_and_pins->options), arm_and_pins->stages);
     }
+    if (scene.tangible) explain_soft_device(scene, plan, options.json, json, notes);
     if (options.json) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;

@@ -123,6 +123,7 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
                            {"area_mm2", 1e6 * contact.area_m2},
                            {"nodes", contact.nodes},
                            {"cells_across_radius", contact.cells_across_radius},
+                           {"cells_under_radius", contact.cells_under_radius},
                            {"depth_mm", 1e3 * contact.depth_m},
                            {"lateral_N", {contact.lateral_N[0], contact.lateral_N[1]}},
                            {"compliance_columns", contact.columns}};

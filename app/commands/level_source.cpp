@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <stdexcept>
+#include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
 
@@ -26,6 +27,11 @@ class LevelStream : public LevelSource {
     explicit LevelStream(const std::string& path) : path_(path) {
         fd_ = path == "-" ? ::dup(0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
         if (fd_ < 0) throw files::InputError(path + ": cannot be read: " + std::strerror(errno));
+        struct stat status {};
+        if (::fstat(fd_, &status) == 0 && S_ISDIR(status.st_mode)) {
+            ::close(fd_);
+            throw files::bad_input(path, "", "a folder", "a file or a pipe with a level a line");
+        }
     }
     ~LevelStream() override { ::close(fd_); }
 
@@ -40,6 +46,9 @@ class LevelStream : public LevelSource {
         for (ssize_t i = 0; i < n; ++i) {
             if (bytes[static_cast<std::size_t>(i)] != '\n') {
                 text_.push_back(bytes[static_cast<std::size_t>(i)]);
+                if (text_.size() > kLongest)
+                    throw files::bad_input(path_, "line " + std::to_string(line_ + 1),
+                                           "more than " + std::to_string(kLongest) + " bytes", "a level a line");
                 continue;
             }
             out.push_back(sample(now_s));
@@ -49,6 +58,8 @@ class LevelStream : public LevelSource {
     }
 
   private:
+    static constexpr std::size_t kLongest = 100;  // of a line
+
     platform::Sample sample(double now_s) {
         ++line_;
         double level = 0.0;

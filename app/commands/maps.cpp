@@ -208,7 +208,13 @@ void add_generate(CLI::App& maps) {
     command->add_flag_callback("--coarser", [&options] { options.meshes = stiffnessmaps::MeshSet::coarser; })
         ->group("");
     part->excludes(jobs)->excludes(merge);
-    command->callback([arguments] { stiffnessmaps::generate_map(generate_options(*arguments)); });
+    command->callback([command, arguments] {
+        for (const char* name : {"--jobs", "--part", "--merge", "--check", "--coarseness"}) {
+            if (arguments->method == "analytic" && command->count(name) > 0)
+                throw files::InputError(std::string(name) + ": found with --method analytic, expected --method fem");
+        }
+        stiffnessmaps::generate_map(generate_options(*arguments));
+    });
 }
 
 }  // namespace

@@ -56,9 +56,9 @@ void add_maps_detect(CLI::App& maps) {
         maps.add_subcommand("detect", "Find the stiff regions of a map, and whether its noise allows the claim");
     command->add_option("MAP", arguments->map, "map folder")->required();
     command
-        ->add_option(
-            "--threshold", arguments->threshold,
-            "stiffness / background from which a cell counts (default: 3 spreads of the excess, at least 1.03)")
+        ->add_option("--threshold", arguments->threshold,
+                     "stiffness / background from which a cell counts, above 1 (default: 3 spreads of the excess, at "
+                     "least 1.03)")
         ->check(CLI::Range(1.0, 1e6));
     command
         ->add_option("--window-mm", arguments->window_mm,

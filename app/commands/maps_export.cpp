@@ -5,6 +5,7 @@
 
 #include "app/commands/maps.h"
 #include "app/commands/option_checks.h"
+#include "files/input_error.h"
 #include "files/regular_file.h"
 #include "stiffnessmaps/export.h"
 #include "stiffnessmaps/map_file.h"
@@ -29,9 +30,12 @@ void add_maps_export(CLI::App& maps) {
     command->add_option("--array", arguments->array, "array to write to FILE.npy")
         ->check(one_of({"normal_N", "tangential_x_N", "tangential_y_N"}))
         ->capture_default_str();
-    command->callback([arguments] {
-        if (std::filesystem::path(arguments->output).has_extension())
-            files::check_output(arguments->output, {arguments->map});
+    command->callback([command, arguments] {
+        const std::filesystem::path output = arguments->output;
+        if (command->count("--array") > 0 && output.extension() != ".npy")
+            throw files::InputError("--array: found with " + files::shown(arguments->output) +
+                                    ", expected FILE.npy (other files hold all arrays)");
+        if (output.has_extension()) files::check_output(arguments->output, {arguments->map});
         stiffnessmaps::export_map(stiffnessmaps::read_map(arguments->map), arguments->array, arguments->output);
     });
 }

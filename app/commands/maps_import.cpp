@@ -45,7 +45,8 @@ std::vector<double> lengths_m(const std::string& text, const char* option, std::
         const auto end = rest.find(',');
         double value = 0.0;
         if (!files::parse_number(rest.substr(0, end), value) || !(std::abs(value) <= 1e6)) {
-            throw files::bad_input(option, "", files::shown(text), "numbers of mm with commas between them");
+            throw files::bad_input(option, "", files::shown(text),
+                                   "numbers of mm, at most 1e6 each, with commas between them");
         }
         out.push_back(1e-3 * value);
         if (end == std::string_view::npos) break;
@@ -239,6 +240,11 @@ void import_map(const CLI::App& command, const ImportArguments& a) {
         throw files::bad_input("maps import", "", "no output",
                                "-o NAME.map (or --explain, to see what would be chosen)");
     if (!a.output.empty()) files::check_new(a.output);
+    for (const char* name : {"--poisson", "--cylinder-length-mm"}) {
+        if (command.count(name) > 0 && options.quantity != stiffnessmaps::Quantity::young)
+            throw files::bad_input(name, "", "another quantity than Young's moduli",
+                                   "--quantity young, for which this option is");
+    }
     stiffnessmaps::ImportReport report;
     std::optional<files::ProgressLine> line(std::in_place);
     options.progress = [&line](const char* what, double done) { line->show(what, done > 0.0 ? done : std::nan("")); };

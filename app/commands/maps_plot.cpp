@@ -1,6 +1,7 @@
 // palpa maps plot
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -36,6 +37,16 @@ Eigen::Vector2d place_of(const std::string& text) {
     return {1e-3 * x_mm, 1e-3 * y_mm};
 }
 
+// A depth slice at a force that no place has reached would show nothing.
+void check_force(const figures::PlotOptions& options, const stiffnessmaps::Map& map) {
+    float most_N = 0.0F;
+    for (const float force_N : map.normal_N) most_N = std::isnan(force_N) ? most_N : std::max(most_N, force_N);
+    if (!options.force_N || *options.force_N <= static_cast<double>(most_N)) return;
+    throw files::bad_input(
+        "--force-N", "", files::short_number(*options.force_N),
+        "at most " + files::short_number(static_cast<double>(most_N)) + ", the map's greatest force");
+}
+
 void run_plot(const CLI::App& command, const PlotArguments& arguments) {
     figures::check_figure(arguments.output);
     files::check_output(arguments.output, {arguments.map});
@@ -44,9 +55,16 @@ void run_plot(const CLI::App& command, const PlotArguments& arguments) {
     for (int i = 0; i < 6; ++i) {
         if (arguments.what == kWhat[i]) options.what = static_cast<figures::PlotWhat>(i);
     }
+    const bool curves = arguments.what == "curves" || arguments.what == "all";
+    const bool slice = arguments.what == "slice" || arguments.what == "all";
+    if (!arguments.at.empty() && !curves)
+        throw files::InputError("--at: found with --what " + arguments.what + ", expected curves or all");
+    if (command.count("--force-N") > 0 && !slice)
+        throw files::InputError("--force-N: found with --what " + arguments.what + ", expected slice or all");
     for (const std::string& at : arguments.at) options.at_m.push_back(place_of(at));
     if (command.count("--force-N") > 0) options.force_N = arguments.force_N;
     const stiffnessmaps::Map map = stiffnessmaps::read_map(arguments.map);
+    check_force(options, map);
     figures::plot_map(map, stiffnessmaps::detect_regions(map, arguments.map, {}), options, arguments.output);
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "files/input_error.h"
+#include "files/text.h"
 
 namespace palpa::app {
 namespace {
@@ -95,6 +96,15 @@ void check_subcommands(const CLI::App& app, const std::vector<std::string>& argu
         at = found;
         path += (path.empty() ? "" : " ") + word;
     }
+}
+
+void check_force_N(double force_N, const scene::Scene& scene, const calibration::Profile& profile) {
+    std::int64_t clamped = 0;
+    const double most_N = scene.force_scale * calibration::force_N(profile, profile.level_highest, clamped);
+    if (force_N <= most_N) return;
+    throw files::bad_input(
+        "--force-N", "", files::short_number(force_N),
+        "at most " + files::short_number(most_N) + ", the greatest force of the profile " + profile.id);
 }
 
 }  // namespace palpa::app

@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "calibration/profile.h"
+#include "scene/scene.h"
+
 namespace CLI {
 class App;
 class Validator;
@@ -29,5 +32,8 @@ void refuse_what_is_no_value(CLI::App& command);
 // Throws files::InputError if a word stands where a subcommand is required and names none: CLI11 itself says only that a
 // subcommand is required. `arguments`: in the order in which they were typed.
 void check_subcommands(const CLI::App& app, const std::vector<std::string>& arguments);
+
+// Throws files::InputError for a --force-N that a simulated pen cannot press with, by the scene's profile.
+void check_force_N(double force_N, const scene::Scene& scene, const calibration::Profile& profile);
 
 }  // namespace palpa::app

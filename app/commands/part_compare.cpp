@@ -10,6 +10,7 @@
 #include "figures/gnuplot.h"
 #include "figures/part_figure.h"
 #include "files/printable.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "parts/compare.h"
 
@@ -86,7 +87,10 @@ void print_comparison(const parts::Part& a, const parts::Part& b, const parts::P
 }
 
 void compare(const CompareOptions& options) {
-    if (!options.figure.empty()) figures::check_figure(options.figure);
+    if (!options.figure.empty()) {
+        figures::check_figure(options.figure);
+        files::check_output(options.figure, {options.a, options.b});
+    }
     const parts::Part a = parts::read_part(options.a), b = parts::read_part(options.b);
     parts::StiffnessOptions how{{method_named(options.method)}, {}, options.tolerance};
     if (options.cell_mm > 0.0) how.cell_m = 1e-3 * options.cell_mm;

@@ -2,9 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "app/commands/study.h"
+#include "app/scene_choices.h"
 #include "app/study/study_scenes.h"
 #include "files/regular_file.h"
 #include "files/sha256.h"
@@ -32,13 +35,21 @@ std::vector<files::Json> hashes_of(const StudyScenes& scenes) {
 
 void preregister(const PreregisterOptions& options) {
     const study::Protocol protocol = study::read_protocol(options.protocol);
-    const study::SheetOptions sheet{options.participants, "palpa " PALPA_VERSION,
-                                    hashes_of(load_study_scenes(protocol))};
+    const StudyScenes scenes = load_study_scenes(protocol);
+    if (!options.output.empty()) {
+        std::vector<std::filesystem::path> inputs{options.protocol};
+        for (const auto& scene : scenes) {
+            if (!scene) continue;
+            const std::vector<std::filesystem::path> more = inputs_of(scene->scene);
+            inputs.insert(inputs.end(), more.begin(), more.end());
+        }
+        files::check_output(options.output, inputs);
+    }
+    const study::SheetOptions sheet{options.participants, "palpa " PALPA_VERSION, hashes_of(scenes)};
     const std::string text = study::preregistration_sheet(protocol, sheet);
     if (options.output.empty()) {
         std::fputs(text.c_str(), stdout);
     } else {
-        files::check_output(options.output, {options.protocol});
         files::write_text_atomically(options.output, text);
     }
     for (const std::string& missing : study::missing_statements(protocol))

@@ -27,6 +27,7 @@ struct CharacteriseOptions {
     std::string scene;
     std::vector<double> stiffness_N_per_mm{0.25, 0.33, 0.5, 1.0};
     double depth_mm = 10.0;
+    bool depth_asked = false;
     int cycles = 3;
     double cycle_s = 4.0;
     double force_limit_N = 15.0;
@@ -77,6 +78,19 @@ std::function<double(double)> law_of(double wanted_N_per_m, CharacterisedTissue 
                                        pressed->work)
             .force_N;
     };
+}
+
+// Beyond the depth that the tissue is known for its force holds, too. Presses go as deep as that at most; one that was asked to go
+// deeper is refused.
+void limit_depth(const CharacterisedTissue& tissue, CharacteriseOptions& options) {
+    // so soft that no force limit holds it
+    const auto law = law_of(0.05 * options.force_limit_N / (1e-3 * options.depth_mm), tissue);
+    double depth_m = 1e-3 * options.depth_mm;
+    while (law(0.99 * depth_m) > 0.9999 * law(depth_m)) depth_m *= 0.99;
+    if (depth_m < 1e-3 * options.depth_mm && options.depth_asked)
+        throw files::bad_input("--depth-mm", "", files::short_number(options.depth_mm),
+                               "at most " + files::short_number(1e3 * depth_m) + ", as deep as the tissue is known");
+    options.depth_mm = 1e3 * depth_m;
 }
 
 // Above the limit the force holds, and a line through it is no stiffness that the arm renders.
@@ -180,7 +194,10 @@ void check_characterise(const CharacteriseOptions& options) {
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
     if (twice != sorted.end())  // both would go to one table
         throw files::bad_input("--stiffness-N-per-mm", "", files::short_number(*twice) + " twice", "each number once");
-    if (!options.folder.empty()) files::check_output_folder(options.folder);
+    if (options.folder.empty()) return;
+    files::check_output_folder(options.folder);
+    // tables of two runs would stand side by side
+    files::check_new(std::filesystem::path(options.folder) / "characterise.json");
 }
 
 // One stiffness: strokes, line, and its entry in the report.
@@ -202,16 +219,17 @@ tactile::StiffnessRun characterise_one(double wanted_N_per_m, const Characterise
     return run;
 }
 
-void characterise(const CharacteriseOptions& options) {
+void characterise(CharacteriseOptions options) {
     check_characterise(options);
     const scene::Scene scene = load_scene(options.scene);
     const bool has_arm = scene.tactile && scene.tactile->arm;
     const devices::ArmDevice device =
         rig_device(options.rig, has_arm ? scene.tactile->arm->device : std::filesystem::path());
     const CharacterisedTissue tissue = tissue_of(options, scene);
+    limit_depth(tissue, options);
     check_force(options, tissue, device);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
-    files::Json json{{"scene", options.scene}, {"simulated", options.rig.simulate}};
+    files::Json json{{"scene", options.scene}, {"simulated", options.rig.simulate}, {"depth_mm", options.depth_mm}};
     if (options.rig.simulate) json["seed"] = options.rig.seed;
     const auto compensation = compensation_for(options, device, json);
     json["runs"] = files::Json::array();
@@ -245,9 +263,10 @@ void add_tactile_characterise(CLI::App& tactile) {
     command->add_option("--stiffness-N-per-mm", options->stiffness_N_per_mm, "to render, separated by commas")
         ->delimiter(',')
         ->capture_default_str();
-    command->add_option("--depth-mm", options->depth_mm, "of each press")
-        ->check(CLI::Range(1.0, 40.0))
-        ->capture_default_str();
+    command
+        ->add_option("--depth-mm", options->depth_mm,
+                     "of each press (default: 10, or less where the tissue is known no deeper)")
+        ->check(CLI::Range(1.0, 40.0));
     command->add_option("--cycles", options->cycles, "presses for each stiffness")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
@@ -259,9 +278,13 @@ void add_tactile_characterise(CLI::App& tactile) {
         ->capture_default_str();
     command->add_option("--compensation", options->compensation,
                         "compensation file, or \"off\" (default: it is identified first)");
-    command->add_option("-o,--output", options->folder, "folder for tables, figure and the compensation file");
+    command->add_option("-o,--output", options->folder,
+                        "folder for tables, figure and the compensation file (tables are never overwritten)");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
-    command->callback([options] { characterise(*options); });
+    command->callback([options, command] {
+        options->depth_asked = command->count("--depth-mm") > 0;
+        characterise(*options);
+    });
 }
 
 }  // namespace palpa::app

@@ -73,7 +73,8 @@ void add_tactile_identify(CLI::App& tactile) {
     CLI::App* command = tactile.add_subcommand(
         "identify", "Find a force arm's friction, weight and ripple from slow strokes of a hand (docs/tactile.md)");
     add_rig_options(*command, options->rig);
-    command->add_option("-o,--output", options->output, "compensation file to write")->required();
+    command->add_option("-o,--output", options->output, "compensation file to write; replaces a file of that name")
+        ->required();
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { identify_arm(*options); });
 }

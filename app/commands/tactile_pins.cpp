@@ -255,7 +255,8 @@ void add_tactile_pins(CLI::App& tactile) {
     test->add_flag("--no-crc", options->no_crc, "simulated boards that check no CRC");
     test->add_flag("--move", options->move, "then lift each pin in turn, to check the wiring");
     test->callback([options] { test_pins(*options); });
-    calibrate->add_option("-o,--output", options->output, "device file to write")->required();
+    calibrate->add_option("-o,--output", options->output, "device file to write; replaces a file of that name")
+        ->required();
     calibrate->add_option("--pulses", options->pulses, "heights at which the pins are measured")
         ->check(CLI::Range(2, 50))
         ->capture_default_str();

@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "app/assets.h"
 #include "app/commands/command_line.h"
@@ -14,6 +16,7 @@
 #include "app/commands/option_checks.h"
 #include "app/commands/tangible_loop.h"
 #include "app/scene_choices.h"
+#include "devices/press_file.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/table.h"
@@ -66,18 +69,20 @@ std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& 
 
 // The finger on a plant: a press, recorded rows are replayed elsewhere, or the built-in motion to three quarters of the depth
 // that the tissue is known for.
-session::Finger finger_of(const TangibleRunArguments& arguments, const tangible::TangiblePlan& plan) {
+session::Finger finger_of(const TangibleRunArguments& arguments, std::vector<devices::PressRow> press,
+                          const tangible::TangiblePlan& plan) {
     session::Finger finger;
     finger.seconds = arguments.seconds;
-    if (!arguments.press.empty()) finger.press = devices::read_press(arguments.press);
+    finger.press = std::move(press);
     finger.motion.depth_m = std::min(finger.motion.depth_m, 0.75 * plan.greatest_m);
     return finger;
 }
 
 session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, const std::string& plant_name,
+                                     std::vector<devices::PressRow> press,
                                      const std::shared_ptr<const tangible::TangiblePlan>& plan) {
     session::TangibleRunOptions run;
-    run.finger = finger_of(arguments, *plan);
+    run.finger = finger_of(arguments, std::move(press), *plan);
     run.log = arguments.log;
     run.seed = arguments.seed;
     std::optional<tangible::Plant> plant;
@@ -127,16 +132,21 @@ void run_tangible(const TangibleRunArguments& arguments) {
         files::check_new(fs::path(arguments.log) / "ticks.tsv");
     }
     const std::string plant_name = plant_of(arguments, scene);
+    std::vector<devices::PressRow> press;  // read before the tissue is prepared, which takes seconds
+    if (!arguments.press.empty()) press = devices::read_press(arguments.press);
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = std::make_shared<const tangible::TangiblePlan>(
         tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments, *scene.tangible)));
-    const session::TangibleResult result = run_as_asked(arguments, plant_name, plan);
+    const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
     if (result.guard != devices::Fault::none)
         json["faults"].push_back({{"fault", "the guard: " + std::string(text(result.guard))}, {"times", 1}});
+    if (result.guard != devices::Fault::none)
+        std::fprintf(stderr, "palpa: warning: the guard relaxed the device (%s); nothing was rendered after that\n",
+                     std::string(text(result.guard)).c_str());
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())
         files::write_text_atomically(fs::path(arguments.log) / "performance.json", files::json_text(json));
@@ -181,7 +191,7 @@ void add_tangible_run(CLI::App& tangible) {
     command->add_option("--port", arguments->ports, "NAME=PATH of a port, instead of the device file's");
     command->add_option("--press", arguments->press,
                         "PRESS.tsv (t_s, x_mm, y_mm, depth_mm or force_N) of the finger on a plant (default: there and "
-                        "back, 6 mm at 5 mm/s)");
+                        "back, 6 mm at 5 mm/s, or 3/4 of the depth that the tissue is known for where that is less)");
     command
         ->add_option("--seconds", arguments->seconds, "how long (default: the press once; a real device until stopped)")
         ->check(CLI::Range(0.01, 1e6));

@@ -92,17 +92,6 @@ void set_scale(const platform::Window& window, const App& app, Gui& gui) {
     gui.set_scale(scale_now(app, window), 0.01f * static_cast<float>(app.settings.text_percent));
 }
 
-// Takes a change of the window's size, or of the hand's side, as a sample: a replay must map positions in the same way.
-void note_resize(const platform::Window& window, Gui& gui, App& app) {
-    set_scale(window, app, gui);
-    if (app.trace || between_study_trials(app) || app.session.trial.finished) return;
-    const platform::Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
-    const scene::ScreenArea& area = app.session.state.screen;
-    const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px &&
-                      now.height_px == area.height_px;
-    if (!same) take(now, app);
-}
-
 // Counts the frame and the latency of the samples that it shows. Samples that change nothing on the screen have no
 // frame, and no latency.
 void note_shown(const platform::Window& window, App& app) {
@@ -264,7 +253,8 @@ struct Live::Impl {
             take_due_rows(app, now_of(app, *window), samples);
         }
         begin_when_kept(*window, *gui, app);
-        note_resize(*window, *gui, app);
+        set_scale(*window, app, *gui);
+        if (!between_study_trials(app)) note_resize(*window, *gui, app);
         place_keyboard(*window, app);
         lift_fingers(gui->hand_mm(), samples, app);
         take_all(window->now_s(), samples, app);  // 2. simulate and log

@@ -164,6 +164,9 @@ void turn_if_shown(platform::Window& window, App& app);
 // True if the present trial has marks that are not scored yet, or the study's form answers that are not logged yet.
 bool not_touched(const App& app);  // touches of this trial are those on the screen, and there was none
 bool work_at_stake(const App& app);
+// Takes a change of the window's size, or of the hand's side, as a sample: a replay must map positions in the same way. A
+// trial that is over takes no samples any more, but what it reveals stays in the window.
+void note_resize(const platform::Window& window, const Gui& gui, App& app);
 // Closes the files of the trial and hands them to the keeper. If they could not be written, stops the trial and returns
 // why, else "".
 std::string close_trial(App& app);

@@ -2,6 +2,7 @@
 // tissue is made anew. Beams answer at once; finite cells are computed meanwhile.
 
 #include <algorithm>
+#include <exception>
 
 #include "app/assets.h"
 #include "app/live/live_app.h"
@@ -22,7 +23,16 @@ bool is_edited(const fs::path& design) {
     return design.parent_path() == edits_folder() && design.stem().string().find("-edited") != std::string::npos;
 }
 
-// The files of a design's edits: the last one that is there, empty if none is, and the next.
+// A copy whose edits were all undone is as its design. One that cannot be read is told of when it is opened.
+bool holds_edits(const fs::path& copy, const fs::path& design) {
+    try {
+        return files::read_json(copy).at("shape").size() > files::read_json(design).at("shape").size();
+    } catch (const std::exception&) {
+        return true;
+    }
+}
+
+// The files of a design's edits: the last one that holds any, empty if none does, and the next.
 struct EditedFiles {
     fs::path last;
     fs::path next;
@@ -31,8 +41,10 @@ struct EditedFiles {
 EditedFiles edited_files(const fs::path& design) {
     const std::string stem = design.stem().string() + "-edited";
     EditedFiles out{{}, edits_folder() / (stem + ".json")};
-    for (int i = 2; fs::exists(out.next); ++i)
-        out.last = std::exchange(out.next, edits_folder() / (stem + "-" + std::to_string(i) + ".json"));
+    for (int i = 2; fs::exists(out.next); ++i) {
+        if (holds_edits(out.next, design)) out.last = out.next;
+        out.next = edits_folder() / (stem + "-" + std::to_string(i) + ".json");
+    }
     return out;
 }
 
@@ -169,7 +181,7 @@ void undo_part(platform::Window& window, const Gui& gui, App& app) {
     fs::path& design = scene::part_options(scene.tissue)->designs.at(last.design);
     parts::EditedPart edited = parts::open_part(design);
     app.parts.undone.push_back({last.design, edited.json["shape"].back()});
-    if (design == last.before && parts::undo_edit(edited)) {
+    if (parts::undo_edit(edited)) {  // in the copy, which the first edit made
         parts::save_part(edited, design);
         keep_design(design, app);
     }

@@ -13,6 +13,7 @@
 #include "app/study/study_run.h"
 #include "files/clock.h"
 #include "render/gl.h"
+#include "scene/advance.h"
 #include "session/history.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
@@ -107,6 +108,18 @@ void begin(platform::Window& window, const Gui& gui, App& app) {
     session::begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
     begin_devices(app);
+}
+
+void note_resize(const platform::Window& window, const Gui& gui, App& app) {
+    if (app.trace) return;
+    session::Session& s = app.session;
+    const platform::Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
+    const scene::ScreenArea& area = s.state.screen;
+    const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px &&
+                      now.height_px == area.height_px;
+    if (same) return;
+    if (!s.trial.finished) return session::take_sample(now, s);
+    scene::put_on_screen(s.scene, *s.plan, {now.width_px, now.height_px, now.x_px, now.y_px, area.px_per_m}, s.state);
 }
 
 std::string close_trial(App& app) {

@@ -77,7 +77,11 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     if (bool* menu = menu_of(app.doing); menu != nullptr && wishes.menu) *menu = *wishes.menu;
     if (wishes.part && palpates(app.doing)) change_part(*wishes.part, window, gui, app);
     if (wishes.screen) open_screen(*wishes.screen, window, app);
-    if (wishes.again || wishes.next || wishes.scene || wishes.profile || wishes.mode) app.guided = false;
+    if (app.guided && (wishes.again || wishes.next || wishes.scene || wishes.profile || wishes.mode)) {
+        app.guided = false;  // whoever goes on by another way need not begin with it again
+        app.settings.guided_done = true;
+        keep_settings(app);
+    }
     if (wishes.scene) app.settings.scene = *wishes.scene;
     if (wishes.profile) app.settings.profile = *wishes.profile;
     if (wishes.scene || wishes.profile) {

@@ -285,6 +285,7 @@ std::shared_ptr<CalibrateForm> make_calibrate_form() { return std::make_shared<C
 void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& wishes) {
     if (form.recording) {
         refresh_fit(*form.recording, form.guide);
+        if (form.guide.fit && form.guide.note == form.problem) form.guide.note.clear();  // there was no curve before
         const GuideWishes asked = draw_guide(*form.recording, gui, form.guide);
         if (asked.keep) keep_profile(form);
         if (asked.keep && form.recording) form.guide.note = form.problem;  // why there is no profile

@@ -84,10 +84,11 @@ Verdict verdict_of(const DeviceCheck& check, const std::vector<platform::Pointer
         const ToolCheck& seen = of_tool(tool, check);
         const std::string name(name_of(tool));
         const platform::PressureKind kind = platform::pressure_kind(check.pressure, tool);
-        if (kind == platform::PressureKind::varies && distinct_pressures(seen) >= kEnough) {
-            return {true, words::filled(words::kVerdictGood,
-                                        {name, std::to_string(distinct_pressures(seen)), fixed(rate_Hz(seen), 0)})};
-        }
+        const std::string values = std::to_string(distinct_pressures(seen));
+        const bool varies = kind == platform::PressureKind::varies;
+        if (varies && distinct_pressures(seen) >= kEnough)
+            return {true, words::filled(words::kVerdictGood, {name, values, fixed(rate_Hz(seen), 0)})};
+        if (varies) tried = words::filled(words::kVerdictFew, {name, values});
         const bool none = kind == platform::PressureKind::constant || kind == platform::PressureKind::missing;
         if (none && tried.empty()) tried = words::filled(words::kVerdictNoSensor, {name});
     }

@@ -230,6 +230,8 @@ void Gui::hand_over(const PanelInput& input) {
     }
 }
 
+bool Gui::shows_focus() const { return !ImGui::GetCurrentContext()->NavDisableHighlight; }
+
 void Gui::hand_over_key(const PanelInput& input) {
     ImGuiIO& io = ImGui::GetIO();
     io.KeyCtrl = input.ctrl;
@@ -241,12 +243,15 @@ void Gui::hand_over_key(const PanelInput& input) {
         return;
     }
     // Enter presses a button as Space does, except where text is typed
-    const bool activates = input.key == platform::key::enter && !io.WantTextInput && !keep_enter_;
+    const bool enter = input.key == platform::key::enter || input.key == platform::key::pad_enter;
+    const bool activates = enter && !io.WantTextInput && (!keep_enter_ || button_focus_);
     if (input.for_panels && keys_to_panels_) {
         held_as = activates ? platform::key::space : input.key;
         io.KeysDown[held_as] = true;
     }
-    if (!io.WantTextInput) keys_.push_back({input.key, input.ctrl});
+    const bool writes = input.key != platform::key::f11 && !(input.ctrl && input.key == 'q');
+    const bool taken = activates && keep_enter_;  // by the button
+    if (!taken && (!io.WantTextInput || !writes)) keys_.push_back({input.key, input.ctrl});
 }
 
 // Replaces the text of the field by a text typed on an on-screen keyboard.
@@ -275,6 +280,7 @@ void Gui::begin_frame(double dt_s, bool keys_to_panels) {
     io.MousePos = ImVec2(pointer_x_px_, pointer_y_px_);
     take_frame(waiting_, frame_);
     for (const PanelInput& input : frame_) hand_over(input);
+    button_focus_ = false;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     areas_.clear();

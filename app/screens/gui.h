@@ -42,8 +42,10 @@ class Gui {
     // True while something is held on the panels, or input waits for the next frame: the next frames should then come
     // soon.
     bool in_use() const;
-    // If `keep`, Enter is a key of the screen (pressed()) instead of pressing the control that has the focus.
+    // If `keep`, Enter is a key of the screen (pressed()) instead of pressing the control that has the focus, unless a ring
+    // shows that this is a button.
     void keep_enter(bool keep) { keep_enter_ = keep; }
+    void note_button_focus() const { button_focus_ = true; }  // the button that is being drawn has the ring
     std::uint64_t content() const;  // hash of the panels closed last: equal hashes, equal looks
     void draw();                    // hands these panels to GL
     void renew_drawing();           // after GL lost all that it held
@@ -52,6 +54,7 @@ class Gui {
     void claim(const PanelArea& area) { areas_.push_back(area); }
     // True if a key (platform/window_event.h) goes down in this frame; always false while text is typed.
     bool pressed(int key, bool ctrl = false) const;
+    bool shows_focus() const;  // a ring marks the control that Enter and Space press
     // Returns whether F12 went down since the last call, whatever the panels do with keys. It does not wait for a frame.
     bool take_stop();
     // Returns the field that takes letters now, for a screen with an on-screen keyboard; nothing if no field does.
@@ -97,8 +100,9 @@ class Gui {
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;
     bool keep_enter_ = false;
-    bool stop_ = false;     // F12 went down
-    bool emptied_ = false;  // a field was emptied by a Backspace that nobody pressed
+    mutable bool button_focus_ = false;  // in the frame before a button had the ring
+    bool stop_ = false;                  // F12 went down
+    bool emptied_ = false;               // a field was emptied by a Backspace that nobody pressed
     float pointer_x_px_ = -1e6f;
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;

@@ -129,7 +129,10 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
     wrapped_text(text);
     ImGui::SetWindowFontScale(1.0f);
     if (result) {
-        if (big_button(words::kStartPractice, "", {60.0f * gui.mm(), kTarget_mm, true, true}, gui))
+        const bool menu = menu_of(shown.doing) != nullptr && *menu_of(shown.doing);
+        const bool by_key = gui.pressed(platform::key::enter) && !gui.shows_focus();
+        if (big_button(words::kStartPractice, words::kEnter, {60.0f * gui.mm(), kTarget_mm, true, true}, gui) ||
+            (by_key && !menu))
             wishes.guided = false;
         ImGui::SameLine();
         if (big_button(words::kRepeatGuided, "", {44.0f * gui.mm(), kTarget_mm, true, false}, gui))

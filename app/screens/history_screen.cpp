@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <ctime>
 
 #include "app/screens/plot.h"
 #include "app/screens/widgets.h"
@@ -19,11 +21,6 @@ double path_s(const KeptTrial& trial) {
     return last_s + 0.2;
 }
 
-// "2026-11-21 09:30" of "2026-11-21T09:30:00Z"
-std::string when_of(const KeptTrial& trial) {
-    return trial.utc.size() < 16 ? trial.utc : trial.utc.substr(0, 10) + " " + trial.utc.substr(11, 5);
-}
-
 const char* mode_word(const KeptTrial& trial) {
     return trial.mode == session::TrialMode::test ? words::kTest : words::kPractice;
 }
@@ -34,9 +31,9 @@ void trial_list(const Gui& gui, HistoryView& history) {
         ImGui::PushID(static_cast<int>(k));
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
-        const std::string text =
-            words::filled(words::kHistoryLine, {when_of(trial), mode_word(trial), clock_text(trial.clock_s)}) + "\n" +
-            found_text(trial);
+        const std::string text = words::filled(words::kHistoryLine, {local_time_text(trial.utc), mode_word(trial),
+                                                                     clock_text(trial.clock_s)}) +
+                                 "\n" + found_text(trial);
         if (big_button(text.c_str(), "", {0.0f, 1.5f * kTarget_mm, true, k == history.chosen}, gui))
             choose_trial(k, history);
         if (k == history.chosen) ImGui::SetItemDefaultFocus();
@@ -49,7 +46,7 @@ void trial_list(const Gui& gui, HistoryView& history) {
 void ask_to_delete(const Gui& gui, HistoryView& history, Wishes& wishes) {
     warning_paragraph(words::filled(words::kDeleteAsk, {std::to_string(history.trials.size())}));
     const float width_px = share_of_line_px(2);
-    if (big_button(words::kCancel, "", {width_px, kTarget_mm, true, false}, gui)) history.asks = false;
+    if (big_button(words::kCancel, words::kEscape, {width_px, kTarget_mm, true, false}, gui)) history.asks = false;
     ImGui::SameLine();
     if (!big_button(words::kDeleteNow, "", {width_px, kTarget_mm, true, false}, gui)) return;
     history.asks = false;
@@ -177,6 +174,21 @@ void replay_controls(const Gui& gui, const KeptTrial& trial, HistoryView& histor
 
 }  // namespace
 
+std::string local_time_text(const std::string& utc) {
+    std::tm time{};
+    const int read = std::sscanf(utc.c_str(), "%d-%d-%dT%d:%d:%d", &time.tm_year, &time.tm_mon, &time.tm_mday,
+                                 &time.tm_hour, &time.tm_min, &time.tm_sec);
+    if (read != 6) return utc;
+    time.tm_year -= 1900;
+    time.tm_mon -= 1;
+    const std::time_t seconds = timegm(&time);
+    std::tm local{};
+    localtime_r(&seconds, &local);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
+    return text;
+}
+
 std::string found_text(const KeptTrial& trial) {
     if (trial.nodules.empty()) return words::filled(words::kHistoryNone, {std::to_string(trial.false_positives)});
     return words::filled(words::kHistoryFound, {std::to_string(trial.found), std::to_string(trial.nodules.size()),
@@ -209,6 +221,10 @@ void play_on(double dt_s, HistoryView& history) {
 
 void draw_history_screen(const Shown& shown, Gui& gui, HistoryView& history, Wishes& wishes) {
     play_on(shown.dt_s, history);
+    if (history.asks && gui.pressed(platform::key::escape)) {  // it answers the question, and does not leave the screen
+        history.asks = false;
+        wishes.screen.reset();
+    }
     const WindowSize window = gui.size_px();
     const float mm = gui.mm();
     const bool wide = window.width >= window.height;

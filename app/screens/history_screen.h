@@ -27,6 +27,9 @@ std::shared_ptr<HistoryView> make_history_view(const std::filesystem::path& fold
 // Chooses a trial and replays its path.
 void choose_trial(std::size_t index, HistoryView& history);
 
+// The clock on the wall: "2026-11-21 10:30" of "2026-11-21T09:30:00Z" in Berlin; texts of another form stay as they are.
+std::string local_time_text(const std::string& utc);
+
 // What was found, in words; in a tissue without nodules there is nothing to find.
 std::string found_text(const session::KeptTrial& trial);
 

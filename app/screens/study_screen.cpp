@@ -60,12 +60,17 @@ bool is_double_enter(const StudyRun& run, double now_s) {
 void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     title(words::kParticipantCode);
     paragraph(words::kCodeNoName);
+    // the code that was offered has been taken at another screen
+    if (form.refused != step.refused && step.refused > 0 && form.code == form.offered)
+        form.code = form.offered = free_code(run);
     char text[24];
     std::snprintf(text, sizeof text, "%s", form.code.c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
     if (form.refused != step.refused || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     form.refused = step.refused;
-    const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
+    // what is typed replaces a code that is offered, or was refused, also where the field had the letters before
+    constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll;
+    const bool entered = text_field(words::kCode, text, sizeof text, kFlags, gui);
     form.code = text;
     // Escape takes the focus from the field, and there is no other field to give it to
     if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) form.refused = -1;

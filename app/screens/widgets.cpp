@@ -65,6 +65,7 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
     ImGui::BeginDisabled(!look.enabled);
     const int colours = push_colours(look);
     const bool pressed = ImGui::Button(label, size);
+    if (gui.shows_focus() && ImGui::IsItemFocused()) gui.note_button_focus();
     ImGui::PopStyleColor(colours);
     ImGui::EndDisabled();
     hint_for_last(look.hint);

@@ -339,7 +339,7 @@ inline constexpr const char* kDeviceLine = "{}: {}, {} {}";
 inline constexpr const char* kForceLimit = "limit";
 inline constexpr const char* kFeelFirstOn = "Press the first surface with your finger, then choose Done.";
 inline constexpr const char* kFeelSecondOn = "Press the second surface with your finger, then choose Done.";
-inline constexpr const char* kPressLightly = "Press more lightly: stay below the limit.";
+inline constexpr const char* kPressLightly = "At the limit: press lightly.";
 inline constexpr const char* kDevicesMissing = "Missing: {}";
 inline constexpr const char* kDevicesStopped = "The devices were stopped: {}. Start releases them and begins again.";
 
@@ -394,6 +394,8 @@ inline constexpr const char* kByTimeHeld = "set by time or level, no sensor";
 inline constexpr const char* kVerdictGood = "Ready: the {} measures pressure ({} distinct values, {} Hz).";
 inline constexpr const char* kVerdictNoSensor =
     "The {} does not measure pressure. Press by holding, or use another device.";
+inline constexpr const char* kVerdictFew =
+    "The {} has a pressure sensor, {} values so far: press on, lightly, then hard.";
 inline constexpr const char* kVerdictTry = "Not tried yet: press in the test area, lightly, then hard.";
 inline constexpr const char* kVerdictNone =
     "No connected device reports a pressure sensor. Try one in the test area, or press with the mouse or the keys.";

@@ -1,8 +1,10 @@
 // Who takes part in a study, and who stops before its end.
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <system_error>
 
 #include "app/study/study_run.h"
 
@@ -18,12 +20,22 @@ void forget(const fs::path& subject) {
     fs::remove(subject, none);  // stays if it holds anything
 }
 
+// The number that a code of at most nine digits is, else 0.
+std::size_t number_of(const std::string& code) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(code.data(), code.data() + code.size(), number);
+    const bool whole = error == std::errc() && end == code.data() + code.size();
+    return whole && code.size() <= 9 ? number : 0;
+}
+
 }  // namespace
 
 std::string free_code(const StudyRun& run) {
     std::vector<std::string> notes;
     const std::vector<study::Person> people = study::read_people(run.directory, notes);
-    for (std::size_t number = people.size() + 1;; ++number) {
+    std::size_t last = people.size();
+    for (const study::Person& p : people) last = std::max(last, number_of(p.code));
+    for (std::size_t number = last + 1;; ++number) {
         char code[24];
         std::snprintf(code, sizeof code, "%02zu", number);
         const auto same = [&](const study::Person& p) { return p.code == code; };

@@ -137,7 +137,8 @@ files::Json now_json(const StudyRun& run) {
         json["rated"] = run.protocol.conditions[rated->condition].id;
         return json;
     }
-    if (!run.progress.next) return json;
+    // nothing is presented any more to somebody who has left
+    if (!run.progress.next || at<step::Withdrawn>(run)) return json;
     const study::PlannedTrial& trial = *run.progress.next;
     json["trial"] = trial.trial;
     json["condition"] = run.protocol.conditions[trial.condition].id;

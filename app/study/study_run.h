@@ -56,7 +56,7 @@ struct StudyRun {
 StudyRun open_study_run(const study::Protocol& protocol, const std::filesystem::path& directory,
                         const std::string& code);
 
-// Returns the next free code: 01, 02, ...
+// Returns the next free code: 01, 02, ..., after the highest that is a number.
 std::string free_code(const StudyRun& run);
 
 template <class Step>

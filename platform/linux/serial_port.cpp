@@ -1,13 +1,16 @@
 #include "platform/serial_port.h"
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fcntl.h>
 #include <map>
 #include <poll.h>
 #include <stdexcept>
+#include <sys/file.h>
 #include <termios.h>
+#include <thread>
 #include <unistd.h>
 
 #include "files/input_error.h"
@@ -25,6 +28,17 @@ speed_t speed_of(int baud) {
     return it->second;
 }
 
+// Two programs on one line would each get some of the replies, and move one device against each other. A program that has just
+// ended may still let its device go.
+bool locked(int fd) {
+    constexpr int kTries = 50;
+    for (int i = 0; i < kTries; ++i) {
+        if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return false;
+}
+
 }  // namespace
 
 SerialPort::SerialPort(const std::string& path, int baud) {
@@ -36,10 +50,15 @@ SerialPort::SerialPort(const std::string& path, int baud) {
         ::close(fd_);
         throw std::runtime_error(path + ": is not a serial port");
     }
+    if (!locked(fd_)) {
+        ::close(fd_);
+        throw std::runtime_error(path + ": is used by another program");
+    }
     ::cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     ::cfsetspeed(&settings, speed);
     ::tcsetattr(fd_, TCSANOW, &settings);
+    ::tcflush(fd_, TCIFLUSH);  // what came before nobody has asked for, and its time is not known
 }
 
 SerialPort::~SerialPort() { ::close(fd_); }

@@ -6,6 +6,7 @@
 #include <SDL.h>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -59,7 +60,8 @@ struct Window::Impl {
 
     GlWindow gl;
     Pointers pointers;
-    bool stirred = false;  // of the last poll()
+    std::optional<SDL_Rect> before_full;  // the window's place before it covered a screen without a window manager
+    bool stirred = false;                 // of the last poll()
     bool uncovered = false;
 };
 
@@ -156,9 +158,30 @@ std::string Window::input_note() const {
 
 void Window::set_title(const std::string& title) { SDL_SetWindowTitle(sdl(), title.c_str()); }
 
-bool Window::full_screen() const { return (SDL_GetWindowFlags(sdl()) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0; }
+bool Window::full_screen() const {
+    return impl_->before_full || (SDL_GetWindowFlags(sdl()) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0;
+}
 
-void Window::set_full_screen(bool full) { SDL_SetWindowFullscreen(sdl(), full ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0); }
+void Window::set_full_screen(bool full) {
+    if (full == full_screen()) return;
+    if (!impl_->before_full && window_managed(sdl())) {
+        SDL_SetWindowFullscreen(sdl(), full ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+        return;
+    }
+    // SDL would take the window for as large as the screen, which nobody has made it
+    SDL_Rect area{};
+    if (full) {
+        SDL_Rect now{};
+        SDL_GetWindowPosition(sdl(), &now.x, &now.y);
+        SDL_GetWindowSize(sdl(), &now.w, &now.h);
+        if (SDL_GetDisplayBounds(std::max(0, SDL_GetWindowDisplayIndex(sdl())), &area) != 0) return;
+        impl_->before_full = now;
+    } else {
+        area = *std::exchange(impl_->before_full, std::nullopt);
+    }
+    SDL_SetWindowPosition(sdl(), area.x, area.y);
+    SDL_SetWindowSize(sdl(), area.w, area.h);
+}
 
 std::string Window::screen_name() const {
     const int display = std::max(0, SDL_GetWindowDisplayIndex(sdl()));

@@ -143,6 +143,23 @@ XiEvent plain_event(XiKind kind, const XIDeviceEvent& device_event) {
 
 }  // namespace
 
+bool window_managed(SDL_Window* window) {
+    SDL_SysWMinfo info;
+    SDL_VERSION(&info.version);
+    if (SDL_GetWindowWMInfo(window, &info) != SDL_TRUE || info.subsystem != SDL_SYSWM_X11) return true;
+    Display* display = info.info.x11.display;
+    const Atom check = XInternAtom(display, "_NET_SUPPORTING_WM_CHECK", True);
+    if (check == None) return false;
+    Atom type = None;
+    int format = 0;
+    unsigned long count = 0, left = 0;
+    unsigned char* manager = nullptr;
+    XGetWindowProperty(display, DefaultRootWindow(display), check, 0, 1, False, AnyPropertyType, &type, &format, &count,
+                       &left, &manager);
+    if (manager != nullptr) XFree(manager);
+    return count > 0;
+}
+
 std::optional<XInput> open_xinput(SDL_Window* window) {
     SDL_SysWMinfo info;
     SDL_VERSION(&info.version);

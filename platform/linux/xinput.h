@@ -27,6 +27,9 @@ struct XInput {
 // Returns nothing if the window is not on an X server, or if that server has no XInput2.
 std::optional<XInput> open_xinput(SDL_Window* window);
 
+// False on an X server without a window manager, as in a kiosk: nobody there changes a window's size at a program's wish.
+bool window_managed(SDL_Window* window);
+
 enum class XiNews : std::uint8_t { none, event, devices_changed };
 
 // Reads an SDL_SYSWMEVENT. It may be called only inside an SDL event watch: X frees the event's data right after the

@@ -69,15 +69,15 @@ void note_ground(const StiffnessGrid& grid, Detection& d) {
 
 void check_options(const DetectOptions& o) {
     const auto refuse = [](const char* name, double value, const char* expected) {
-        throw files::bad_input("detect", name, files::short_number(value), expected);
+        throw files::bad_input(name, "", files::short_number(value), expected);
     };
     if (o.threshold && !(*o.threshold > 1.0 && *o.threshold <= 1e6))
-        refuse("threshold", *o.threshold, "a ratio above 1");
-    if (!(o.window_m > 0.0 && o.window_m <= 1e3)) refuse("window", o.window_m, "a radius above 0");
+        refuse("--threshold", *o.threshold, "a ratio above 1");
+    if (!(o.window_m > 0.0 && o.window_m <= 1e3)) refuse("--window-mm", o.window_m, "a radius above 0");
     if (o.smoothing_m && !(*o.smoothing_m >= 0.0 && *o.smoothing_m <= 1.0))
-        refuse("smoothing", *o.smoothing_m, "0 to 1000 mm");
+        refuse("--smoothing-mm", *o.smoothing_m, "0 to 1000 mm");
     if (o.smallest_m && !(*o.smallest_m >= 0.0 && *o.smallest_m <= 1e3))
-        refuse("smallest", *o.smallest_m, "at least 0");
+        refuse("--smallest-mm", *o.smallest_m, "at least 0");
 }
 
 }  // namespace

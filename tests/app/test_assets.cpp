@@ -3,6 +3,7 @@
 #include "app/assets.h"
 #include "app/scene_choices.h"
 #include "tests/error_message.h"
+#include "tests/study/python.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -46,4 +47,36 @@ TEST_CASE("scenes: a name alone is looked for here, then among those that ship; 
     CHECK(contains(message, "toothbrus: found nothing"));
     CHECK(contains(message, assets_folder().string()));
     CHECK(contains(message_of([] { load_scene("scenes/toothbrush.json"); }), "found nothing"));
+}
+
+// Python's jsonschema is the independent judge: the readers of Palpa do not look at the schemas.
+TEST_CASE("assets: every shipped file is valid by the schema of its kind") {
+    const std::string python = python_with("jsonschema");
+    if (python.empty()) {
+        MESSAGE("left out: no Python with jsonschema here");
+        return;
+    }
+    const TemporaryFolder folder;
+    const bool valid = run_python(python, folder, R"(
+import glob, json, os, re, sys
+from jsonschema import Draft202012Validator
+assets = ')" PALPA_SOURCE_DIR R"(/assets'
+
+def read(path):  # comments stand outside of texts
+    text = open(path, encoding='utf-8').read()
+    return json.loads(re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*', lambda found: found.group(1) or '', text))
+
+kinds = {'cases': 'case', 'devices': 'device', 'fingers': 'finger', 'parts': 'part', 'phantoms': 'phantom',
+         'plants': 'plant', 'profiles': 'profile', 'protocols': 'protocol', 'scenes': 'scene'}
+own = {'arm.json': 'arm', 'pins-6x6.json': 'pins'}
+files = [(file, own.get(os.path.basename(file), kind))
+         for folder, kind in kinds.items() for file in glob.glob(assets + '/' + folder + '/*.json')]
+files += [(file, 'map') for file in glob.glob(assets + '/maps/*.map/map.json')]
+assert len(files) > 50, len(files)
+for file, kind in files:
+    schema = read(assets + '/schemas/' + kind + '.schema.json')
+    for error in Draft202012Validator(schema).iter_errors(read(file)):
+        sys.exit(file + ': ' + '/'.join(map(str, error.path)) + ': ' + error.message)
+)");
+    CHECK_MESSAGE(valid, read_text(folder / "said.txt"));
 }

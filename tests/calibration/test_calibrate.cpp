@@ -184,6 +184,31 @@ TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
     CHECK(any_with(warnings, "only 5 distinct levels"));
 }
 
+TEST_CASE("calibrate: a press that was broken off after its first point does not keep the others from their curve") {
+    CalibrationRows rows;
+    add_row(0.2, 0.0981 * std::exp(3.0 * 0.2) * 1.1, 0, rows);
+    for (int i = 1; i <= 8; ++i) add_row(i / 8.0, 0.0981 * std::exp(3.0 * i / 8.0), 1, rows);
+    CalibrateOptions options;
+    options.model = CurveModel::exponential;
+    const Calibration calibration = calibrate(rows, options);
+    CHECK(calibration.force_at_full_N == close_to(0.0981 * std::exp(3.0)).epsilon(0.02));
+    CHECK_FALSE(calibration.by_repeats);
+}
+
+TEST_CASE("calibrate: points far off the curve are told, and whether they pull it") {
+    CalibrationRows rows;
+    for (int i = 0; i <= 60; ++i)
+        add_row(i / 60.0, 0.05 * std::exp(4.0 * i / 60.0) * (i % 20 == 10 ? 3.0 : 1.0), 0, rows);
+    CalibrateOptions options;
+    options.model = CurveModel::exponential;
+    options.error = ErrorModel::newton;
+    CHECK(
+        any_with(calibrate(rows, options).warnings, "3 of 61 points are far off the curve (slips?) and count little"));
+    options.robust = Robust::none;
+    const auto warnings = calibrate(rows, options).warnings;
+    CHECK_FALSE(any_with(warnings, "count little"));
+}
+
 TEST_CASE("calibrate: a stated level that the points cannot be of is refused") {
     CalibrationRows counts, shares;
     counts.file = shares.file = "p.csv";

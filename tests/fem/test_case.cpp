@@ -159,6 +159,33 @@ TEST_CASE("case: the shipped cases say what their comments promise") {
     CHECK(*wide.centre_m == close_to(0.76401e-3).epsilon(0.003));
 }
 
+TEST_CASE("contact: a mesh that is fine in one direction alone is warned of") {
+    // finest where the tool is along y, and elsewhere along x
+    const FemResult result = solved(case_text(
+        R"({"box": {"size_mm": [80, 80, 60], "elements": [30, 30, 6], "grading": {"centre_mm": [10, 40], "finest_mm": 0.3}}})",
+        "hex8-bbar", kClamped,
+        R"([{"indenter": {"shape": "sphere", "radius_mm": 10, "centre_mm": [65.3, 40], "depth_mm": 0.2}}])"));
+    REQUIRE(result.contact);
+    CHECK(result.contact->cells_across_radius < 1.0);  // sqrt(R d) is 1.4 mm, and 4.7 of the cells along y
+    CHECK_FALSE(contact_warnings(*result.contact).empty());
+}
+
+TEST_CASE("contact: cells that are higher than the contact's radius are warned of") {
+    const auto pressed = [](int layers) {
+        return solved(case_text(
+            R"({"box": {"size_mm": [10, 10, 12], "elements": [28, 28, )" + std::to_string(layers) + "]}}", "hex8-bbar",
+            kClamped,
+            R"([{"indenter": {"shape": "sphere", "radius_mm": 10, "centre_mm": [5, 5], "depth_mm": 0.21}}])"));
+    };
+    const FemResult flat = pressed(9), high = pressed(1);
+    CHECK(flat.contact->cells_under_radius == close_to(std::sqrt(2.1) / (12.0 / 9.0)).epsilon(1e-9));
+    CHECK(contact_warnings(*flat.contact).empty());
+    CHECK(high.contact->cells_across_radius > 4.0);
+    CHECK(high.contact->normal_N > 1.5 * flat.contact->normal_N);
+    REQUIRE(contact_warnings(*high.contact).size() == 1);
+    CHECK(contains(contact_warnings(*high.contact)[0], "8.281 times as high as its radius"));
+}
+
 TEST_CASE("hertz through a case: depth gives the force within 4 %, the force gives the depth back") {
     const std::string mesh =
         R"({"box": {"size_mm": [120, 120, 80], "elements": [22, 22, 12], "grading": {"centre_mm": [60, 60], "finest_mm": 0.24}}})";

@@ -55,6 +55,8 @@ TEST_CASE("json: arrays, choices and whole numbers") {
     const auto count = [](JsonReader& json) { json.integer("n", 0, 10); };
     CHECK(contains(refusal(R"({"n": 2.5})", count), "expected a whole number from 0 to 10"));
     CHECK(contains(refusal(R"({"n": 1e30})", count), "expected a whole number from 0 to 10"));
+    const auto version = [](JsonReader& json) { json.integer("n", 1, 1); };
+    CHECK(refusal(R"({"n": 2})", version) == "slab.json: n: found 2, expected 1");
     const auto nested = [](JsonReader& json) {
         JsonReader inner = json.object("avatar");
         inner.finish();

@@ -2,6 +2,10 @@
 #include <cstring>
 #include <doctest/doctest.h>
 #include <random>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "files/text.h"
 #include "tests/error_message.h"
@@ -56,6 +60,26 @@ TEST_CASE("text: a failed write leaves the old file and nothing else") {
     CHECK_THROWS_AS(write_text_atomically(folder / "none/c", "new"), std::runtime_error);
     CHECK(read_text(folder / "a") == "old");
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 2);
+}
+
+TEST_CASE("text: a run that is killed while it writes leaves the old file and nothing else") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "a", "old");
+    const std::string text(1 << 20, 'x');
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        ::signal(SIGXFSZ, SIG_DFL);  // whatever started the tests may have it ignored
+        const rlimit half{text.size() / 2, text.size() / 2};
+        ::setrlimit(RLIMIT_FSIZE, &half);  // SIGXFSZ ends it in the middle of the file
+        write_text_atomically(folder / "a", text);
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    CHECK(WIFSIGNALED(status));
+    CHECK(read_text(folder / "a") == "old");
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
 TEST_CASE("text: one of a thing is not named in the plural") {

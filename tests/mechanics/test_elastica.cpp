@@ -54,6 +54,23 @@ TEST_CASE("elastica: a small force bends it as the linear beam, pieces of any st
     }
 }
 
+TEST_CASE("elastica: the harder the pull, the nearer it hangs to its limit, and tiny forces bend it in proportion") {
+    // a beam that hangs: across = L - (2 - sqrt 2) sqrt(D / F), shortening = L - sqrt 2 sqrt(D / F)
+    for (const double alpha : {1e4, 1e6, 1.9e6, 1e9, 1e12, 1e20}) {
+        CAPTURE(alpha);
+        for (const int n : {1, 7}) {
+            const ElasticaTip tip = tip_of(alpha, n);
+            const double decay = 1.0 / std::sqrt(alpha);
+            CHECK(std::abs(tip.across_m - (1.0 - (2.0 - std::sqrt(2.0)) * decay)) < 1e-7);
+            CHECK(std::abs(tip.shortening_m - (1.0 - std::sqrt(2.0) * decay)) < 1e-7);
+        }
+    }
+    for (const double alpha : {1e-3, 1e-6, 1e-9, 1e-12, 1e-200}) {
+        CAPTURE(alpha);
+        CHECK(tip_of(alpha, 3).across_m / alpha == close_to(1.0 / 3.0).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("elastica: no pieces, no force and a force that is not a number bend nothing; a huge force stays finite") {
     CHECK(elastica_tip({}, true, 1.0).across_m == 0.0);
     const std::vector<BeamPiece> one{elastica_piece(0.0, 0.1, 1.0)};

@@ -94,6 +94,27 @@ TEST_CASE("part stiffness: each method says when it does not apply") {
     CHECK(test::contains(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].why_not, "along the axis"));
 }
 
+TEST_CASE("part stiffness: a beam doubts a load that is oblique across its section, and one that is spread along it") {
+    Json json = small_part();
+    json["size_mm"] = {20, 2, 2};
+    json["shape"].erase(1);
+    json["loads"] = {{"oblique", {{"face", "xmax"}, {"direction", {0, 1, 1}}}},
+                     {"along", {{"face", "zmax"}, {"direction", "-z"}}},
+                     {"short", {{"at_mm", {14, 1, 2}}, {"patch_mm", 10}, {"direction", "-z"}}}};
+    const Part part = parsed(json);
+    for (const PartLoad& load : part.loads) {
+        CAPTURE(load.name);
+        const auto results = stiffness_of(part, load, {{Method::timoshenko, Method::voxels}, {}, 1e-6});
+        CHECK(results[0].answered);
+        CHECK(test::contains(results[0].why_not, load.name == "oblique" ? "along z, 100 % of that along y, is left out"
+                                                 : load.name == "along" ? "spread along the beam over 20 mm"
+                                                                        : ""));
+        // what is doubted is wrong, what is not is right
+        REQUIRE(results[0].error);
+        CHECK((std::abs(*results[0].error) < 0.03) == results[0].why_not.empty());
+    }
+}
+
 TEST_CASE("part stiffness: the paper's spring never applies and says why, the elastica does beyond 10 degrees") {
     Json json = small_part();
     json["size_mm"] = {20, 2, 2};

@@ -57,6 +57,17 @@ TEST_CASE("hard case 11: a sample a frame behind another source is taken, now; t
     CHECK(timeline.backwards == 0);
 }
 
+TEST_CASE("hard case 11: after a slow frame a device's samples are behind those of a held button, and are taken, now") {
+    Timeline timeline;
+    CHECK(move_to(at(10.0, 5.0), timeline));
+    CHECK(move_to(at(10.5), timeline));  // stamped by the host
+    CHECK(move_to(at(10.55, 5.2), timeline));
+    CHECK(timeline.late == 1);
+    CHECK(timeline.now_s == 10.5);
+    CHECK_FALSE(move_to(at(10.6, 5.1), timeline));  // the device's own clock went back
+    CHECK(timeline.backwards == 1);
+}
+
 TEST_CASE("hard case 11: a device clock that runs at another rate, is set, or jitters backwards") {
     constexpr std::uint32_t kSeed = 4;
     CAPTURE(kSeed);

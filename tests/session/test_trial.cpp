@@ -154,6 +154,26 @@ TEST_CASE("trial: a window that changes its size after a press leaves the place 
     CHECK(on_tissue(person.session.state.view, place()));
 }
 
+TEST_CASE("trial: a window that changes its size under a pen that presses adds nothing to the pen's way") {
+    Trainee person;
+    person.sample(Phase::down, 40.0, 30.0, 0.5);
+    for (int i = 1; i <= 10; ++i) person.sample(Phase::move, 40.0 + i, 30.0, 0.5);
+    const double way_m = person.session.trial.pressed_m;
+    CHECK(way_m == close_to(0.01).epsilon(0.1));
+    Sample resize;
+    resize.t_host_s = person.t_s += 0.01;
+    resize.phase = Phase::ui;
+    resize.action = Action::resize;
+    resize.x_px = 300.0;
+    resize.y_px = 0.0;
+    resize.width_px = 500.0;
+    resize.height_px = 420.0;
+    take_sample(resize, person.session);
+    person.sample(Phase::move, 80.0, 60.0, 0.5);  // where the tissue is now
+    CHECK(person.session.trial.pressed_m == way_m);
+    CHECK(person.session.trial.path.back().begins);
+}
+
 TEST_CASE("trial: a very long path is thinned, not cut") {
     Trainee person;
     for (int i = 0; i < 400; ++i) {

@@ -55,6 +55,21 @@ TEST_CASE("power: rejections and coverage are counted by effect and number of pa
     CHECK(many.coverage.hits == 0);
 }
 
+TEST_CASE("power: the true value is that of all studies, also for a method that has an interval in some of them") {
+    std::vector<PowerRow> rows;
+    for (const double estimate : {1.0, 1.0, 0.4}) {
+        rows.push_back(
+            {1.0, 1.0, 5, {"ppv", "a", "", "Wilson", "", kNone, estimate, {estimate - 0.1, estimate + 0.1}}});
+        if (estimate < 1.0)
+            rows.push_back({1.0, 1.0, 5, {"ppv", "a", "", "bootstrap", "", kNone, estimate, {0.3, 0.5}}});
+    }
+    for (const PowerResult& one : summarise_power(rows, 3, 0.05)) {
+        CAPTURE(one.what.method);
+        CHECK(one.truth == close_to(0.8));
+        CHECK(one.coverage.hits == 0);  // no interval holds 0.8
+    }
+}
+
 TEST_CASE("power: results are sorted, whichever study has a finding first") {
     const auto results = summarise_power(
         {row(1.0, 5, 0.2, 0.1, 0.0, 0.2), row(0.0, 9, 0.2, 0.1, 0.0, 0.2), row(0.0, 5, 0.2, 0.1, 0.0, 0.2)}, 1, 0.05);

@@ -157,6 +157,20 @@ TEST_CASE("psychometric: answers that a step separates have no estimate, and sd 
     }
 }
 
+TEST_CASE("psychometric: the upper limit of sd of a step is that of the flattest curve that the answers allow") {
+    // levels that lie close together; a grid of 4,401 places, 101 lapses and sd gives the limit 0.471. Between 0.046 and 0.15
+    // the answers exclude sd.
+    const double kPa[] = {500, 700, 714.2857, 857.1429, 875, 1142.857, 1166.667, 1400, 1428.571, 2000};
+    const std::int64_t stiffer[] = {0, 0, 0, 0, 2, 1, 2, 1, 2, 4}, n[] = {4, 2, 2, 2, 2, 2, 2, 2, 2, 4};
+    std::vector<LevelAnswers> levels;
+    for (std::size_t i = 0; i < std::size(kPa); ++i) levels.push_back({std::log(kPa[i] / 1000.0), stiffer[i], n[i]});
+    const PsychometricFit fit = fit_psychometric(levels, {});
+    CHECK(fit.status == FitStatus::separated);
+    CHECK_FALSE(fit.sd_ci.low);
+    REQUIRE(fit.sd_ci.high);
+    CHECK(*fit.sd_ci.high == close_to(0.471).epsilon(0.005));
+}
+
 TEST_CASE("psychometric: answers that do not rise have no estimate") {
     for (const std::vector<std::int64_t>& stiffer : {std::vector<std::int64_t>{40, 37, 31, 25, 16, 10, 3, 1},
                                                      {20, 20, 20, 20, 20, 20, 20, 20},

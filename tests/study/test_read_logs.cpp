@@ -292,7 +292,14 @@ TEST_CASE("read logs: nodules that a trial's condition does not have are named, 
     REFUSED(find_study, "found 'A' a second time", forge(log / settings, R"("id": "B")", R"("id": "A")"));
 }
 
-TEST_CASE("read logs: a group that is not the plan's is refused") {
+TEST_CASE("read logs: logs of a protocol whose files are both gone are told") {
+    NAMED(find_study, "study.json and protocol.json are not there", fs::remove(log / "study.json");
+          fs::remove(log / "protocol.json"));
+}
+
+TEST_CASE("read logs: a group that is not the plan's is refused, where there is one group, too") {
+    REFUSED(find_study, "participants.tsv: sub-01, group: found 'II', expected 'all'",
+            forge(log / "participants.tsv", "\tall\n", "\tII\n"));
     const auto two_groups = [](const fs::path& log) {
         const Protocol protocol = protocol_in(log.parent_path() / "p.json", R"(, "groups": [
             {"id": "I", "conditions": ["a", "b"]}, {"id": "II", "conditions": ["b", "a"]}])");

@@ -42,7 +42,8 @@ TEST_CASE("typed trial: what the experimenter types is analysed like what the pr
     write_typed_trial(next_run(folder.path(), "07"), label_of_trial(3, "another"), true, 3, {}, unnamed);
 
     const Observations seen = read_study(folder.path());
-    CHECK(seen.notes.empty());
+    REQUIRE(seen.notes.size() == 1);  // of a protocol that is not beside them
+    CHECK(seen.notes[0].find("study.json and protocol.json are not there") != std::string::npos);
     CHECK(seen.practice_trials == 1);
     CHECK(finished_trials(folder.path(), "07") == std::set<int>{1, 2, 3});
     const Report report = make_report(seen, {});

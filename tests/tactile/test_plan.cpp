@@ -22,7 +22,7 @@ std::string refused_arm(const std::string& impedance, const std::string& from, c
 }
 
 bool has_stage(const tactile::TactilePlan& plan, const std::string& name) {
-    for (const tactile::StageText& stage : plan.stages)
+    for (const scene::StageText& stage : plan.stages)
         if (stage.name == name) return true;
     return false;
 }
@@ -74,7 +74,7 @@ TEST_CASE("tactile plan: the stages say at which force the stroke is used up") {
     CHECK(plan->stroke_used_up_N > 0.0);
     CHECK(plan->stroke_used_up_N < 2.5);
     bool said = false;
-    for (const tactile::StageText& stage : plan->stages)
+    for (const scene::StageText& stage : plan->stages)
         said = said || contains(stage.fidelity,
                                 "the stroke is used up at " + files::short_number(plan->stroke_used_up_N) + " N");
     CHECK(said);

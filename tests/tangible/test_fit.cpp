@@ -83,6 +83,6 @@ TEST_CASE("fit: bad tables and presses that tell nothing") {
         held[i].depth_m = 3e-3;
         held[i].force_N = 1.0;
     }
-    CHECK_THROWS_WITH_AS(fit_presses(small_strip()->device, held), doctest::Contains("stay at a depth of 3 mm"),
+    CHECK_THROWS_WITH_AS(fit_presses(small_strip()->device, held), doctest::Contains("stay between 3 and 3 mm deep"),
                          std::runtime_error);
 }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <random>
 
+#include "tangible/run_figures.h"
 #include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/tangible/small_strip.h"
@@ -120,4 +121,18 @@ TEST_CASE("tangible loop: for a slow sensor the finger is extrapolated") {
     const double ahead = press_small(0.02, slow, {}, 0.0, 3.0).force_rms_percent;
     CHECK(behind > 0.5);  // a straight line hardly shows it: its tension hardly changes
     CHECK(ahead < 0.5 * behind);
+}
+
+TEST_CASE("run figures: ticks in which nobody presses do not dilute the error of the force") {
+    tangible::TickFigures figures;
+    tangible::TangibleCommand tick;
+    tick.pressed = true;
+    tick.wanted_N = 1.0;
+    add(tick, 1.1, figures);
+    CHECK(force_rms_percent(figures) == close_to(10.0));
+    tick.pressed = false;
+    tick.wanted_N = 0.0;
+    for (int i = 0; i < 100; ++i) add(tick, 0.0, figures);
+    CHECK(force_rms_percent(figures) == close_to(10.0));
+    CHECK(figures.ticks == 101);
 }

@@ -87,4 +87,7 @@ TEST_CASE("bench visibility: a force that the profile cannot reach is refused") 
     const Called called = palpa_with("bench visibility --force-N 8");
     CHECK(called.status == 2);
     CHECK(contains(called.err, "--force-N: found 8, expected at most 6.777, the greatest force of the profile s-pen"));
+    const Called nothing = palpa_with("bench visibility button");
+    CHECK(nothing.status == 2);
+    CHECK(contains(nothing.err, "found a tissue without nodules"));
 }

@@ -133,6 +133,14 @@ TEST_CASE("calibrate: bad input ends with status 2, names what is wrong, and lea
     refused(touchpad(), "--model spline", "spline");
     CHECK(calibrate("check " + profile + " " + (folder / "d.csv").string()).status == 2);
     CHECK(calibrate("compare " + profile + " " + profile).status == 2);
+    // a profile of counts is not checked with shares: it is no matter of another calibration
+    write_text_atomically(folder / "counts.csv", touchpad());
+    const std::string counts = (folder / "counts.json").string(), shares = (folder / "shares.csv").string();
+    REQUIRE(calibrate("fit " + (folder / "counts.csv").string() + " -o " + counts).status == 0);
+    write_text_atomically(shares, "level,force_N\n0.2,0.2\n0.5,0.5\n0.9,2\n");
+    const Called checked = calibrate("check " + counts + " " + shares);
+    CHECK(checked.status == 2);
+    CHECK(contains(checked.err, "shares.csv: level: found levels from 0.2 to 0.9, expected counts"));
     // a folder that is not there is wrong input, and named
     const Called nowhere = calibrate("fit " + (folder / "d.csv").string() + " -o " + (folder / "none/p.json").string());
     CHECK(nowhere.status == 2);

@@ -166,13 +166,28 @@ TEST_CASE("fem solve: without memory it ends with a message and status 1, and do
         "not tried: AddressSanitizer needs the address space that the test takes away; run it in the preset release");
     return;
 #endif
+    const TemporaryFolder folder;
+    // so small that nothing lacks memory before OpenBLAS does
+    write_text_atomically(folder / "small.json", R"({
+        "mesh": {"box": {"size_mm": [30, 30, 10], "elements": [6, 6, 2]}},
+        "materials": {"gel": {"young_Pa": 2500, "poisson": 0.45}}, "supports": [{"face": "zmin", "fix": "xyz"}],
+        "loads": [{"indenter": {"shape": "sphere", "centre_mm": [15, 15], "radius_mm": 20, "depth_mm": 1}}]})");
     const std::string hertz = PALPA_SOURCE_DIR "/assets/cases/hertz.json";
-    for (const char* limit_kB : {"200000", "250000", "350000"}) {
+    for (const std::string& file : {hertz, (folder / "small.json").string()}) {
+        for (const char* limit_kB : {"200000", "250000", "260000", "350000"}) {
+            CAPTURE(file);
+            CAPTURE(limit_kB);
+            const Called called = palpa_with("fem solve " + file, std::string("ulimit -v ") + limit_kB + ";");
+            CAPTURE(called.err);
+            CHECK(called.status == 1);
+            CHECK(contains(called.err, "not enough memory"));
+        }
+    }
+    // what needs no matrix ends as always
+    for (const char* limit_kB : {"200000", "250000"}) {
+        const Called called = palpa_with("--version", std::string("ulimit -v ") + limit_kB + ";");
         CAPTURE(limit_kB);
-        const Called called = palpa_with("fem solve " + hertz, std::string("ulimit -v ") + limit_kB + ";");
-        CAPTURE(called.err);
-        CHECK(called.status == 1);
-        CHECK(contains(called.err, "not enough memory"));
+        CHECK(called.status == 0);
     }
 }
 

@@ -330,11 +330,14 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
             "--screen: found 'map', expected trial, devices, scale, calibrate, maps, history, tactile or tangible");
     refused("run --headless --replay trace.tsv in.map --screenshot p.jpg",
             "--screenshot: found 'p.jpg', expected FILE.png");
+    refused("maps generate phantom.json --method analytic --check -o f.map",
+            "--check: found with --method analytic, expected --method fem");
     refused("maps plot in.map -o f.png --what all_of_it",
             "expected all, matrices, stiffness, slice, curves or nodules");
     refused("maps sample in.map --x-mm nan --y-mm 1 --force-N 1", "--x-mm: found 'nan', expected a finite number");
     refused("bench trace in.map -o t.tsv --seconds nan", "--seconds: found 'nan'");
     refused("bench trace in.map -o t.tsv --seconds -1", "--seconds");
+    refused("bench trace in.map -o t.tsv --force-N 100", "--force-N: found 100, expected at most 6.777");
     refused("bench trace in.map -o t.tsv --seconds 100000 --rate-Hz 100000", "expected at most 2e7 samples");
     write_text_atomically(folder / "pens.csv", "inventory_id,tablet,date,pressure_norm,force_N\na,b,c,0.5,-1\n");
     refused("bench pens pens.csv", "line 2, force_N: found '-1', expected a force of 0 or more");

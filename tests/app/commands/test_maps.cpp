@@ -90,6 +90,7 @@ TEST_CASE("command maps detect: text, JSON and what is kept in map.json") {
     // only the tops of A and B are left above 1.1 times the background
     CHECK(parse_json(maps("detect " + map + " --json --threshold 1.1").out, "stdout")["regions"].size() == 2);
     refused("detect " + map + " --threshold 0.5", "--threshold");
+    refused("detect " + map + " --threshold 1", "--threshold: found 1, expected a ratio above 1");
     refused("detect " + map + " --deepest-mm 1", "no cell with a force down to 1 mm");
     refused("detect " + (folder / "no.map").string(), "expected a map folder");
 }
@@ -151,6 +152,7 @@ TEST_CASE("command maps export: every format gives back the same floats") {
                          "assert numpy.isnan(n[0, 1, 3]) and m['depths_mm'].tolist() == [[1.0, 2.5]]\n"));
     }
     refused("export " + name + " -o " + file("m.xls"), "expected .npy, .csv, .mat");
+    refused("export " + name + " --array normal_N -o " + file("m.csv"), "--array: found with");
     refused("export " + name + " -o " + file(".csv"), "found an ending alone, expected a name before it");
     refused("export " + name + " -o " + file("arrays"), "nothing is overwritten");
     refused("export " + name + " -o " + file("no/such/m.csv"), "no/such/m.csv", 2);
@@ -185,6 +187,11 @@ TEST_CASE("command maps plot: every figure in every format, whatever the map is 
     const std::string name = (folder / "small.map").string();
     refused("plot " + name + " -o x.gif", "expected .png, .svg or .pdf");
     refused("plot " + name + " -o x.png --at here", "X,Y in mm");
+    refused("plot " + name + " -o x.png --what stiffness --at 1,1",
+            "--at: found with --what stiffness, expected curves");
+    refused("plot " + name + " -o x.png --what curves --force-N 1",
+            "--force-N: found with --what curves, expected slice");
+    refused("plot " + name + " -o x.png --what slice --force-N 500", "the map's greatest force");
     if (!has_gnuplot()) {
         MESSAGE("not checked: gnuplot is not installed");
         return;

@@ -144,4 +144,10 @@ TEST_CASE("part: wrong usage and wrong parts end with status 2 and a message") {
     }
     CHECK(test::contains(palpa_with("part stiffness " + beam + " --load head").err, "one of tip"));
     CHECK(test::contains(palpa_with("part stiffness " + beam).out, "euler-bernoulli"));
+    const TemporaryFolder folder;
+    const std::string part = (folder / "a.svg").string();  // an input is never replaced
+    std::filesystem::copy_file(beam, part);
+    const Called compared = palpa_with("part compare " + part + " " + beam + " -o " + part);
+    CHECK(compared.status == 2);
+    CHECK(test::contains(compared.err, "found the input"));
 }

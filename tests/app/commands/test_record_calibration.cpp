@@ -138,9 +138,16 @@ TEST_CASE("record: a session without points is begun again without --resume") {
     const TemporaryFolder folder;
     const std::string record =
         kRecord + "-o " + (folder / "s").string() + " --sensor typed --levels /dev/null </dev/null";
-    CHECK(shell(record).status == 0);
-    CHECK(shell(record).status == 0);
+    for (int i = 0; i < 2; ++i) {
+        const Called none = shell(record);
+        CHECK(none.status == 1);
+        CHECK(contains(none.err, "no point was recorded"));
+    }
     CHECK(std::filesystem::exists(folder / "s/levels-02.tsv"));
+    const Called levels =
+        shell(kRecord + "-o " + (folder / "t").string() + " --sensor typed --levels " + folder.path().string());
+    CHECK(levels.status == 2);
+    CHECK(contains(levels.err, "found a folder, expected a file or a pipe"));
 }
 
 TEST_CASE("record: two recordings at once do not share a folder") {
@@ -155,7 +162,7 @@ TEST_CASE("record: two recordings at once do not share a folder") {
         CHECK(contains(refused.err, "found another recording into it, expected a folder of its own for each"));
         CHECK_FALSE(std::filesystem::exists(folder / "levels-01.tsv"));
     }
-    CHECK(shell(record).status == 0);
+    CHECK(shell(record).status == 1);  // without a point, but let in
 }
 
 TEST_CASE("record: the command that it names for the fit has what was said about the levels") {

@@ -187,6 +187,14 @@ TEST_CASE("command study preregister: a sheet with the hashes, and what is not s
     CHECK(study("preregister " + effects + " -o " + (folder / "sheet.md").string()).status == 0);
     CHECK(contains(read_text(folder / "sheet.md"), "# Preregistration"));
     refused("preregister " + effects + " -o " + folder.path().string(), "found a folder");
+    fs::copy(PALPA_SOURCE_DIR "/assets", folder / "assets", fs::copy_options::recursive);
+    const fs::path scene = folder / "assets/scenes/delay.json", protocol = folder / "assets/protocols/effects.json";
+    std::string text = read_text(protocol);
+    const std::string named = "\"scene\": \"delay.json\"";
+    REQUIRE(contains(text, named));
+    write_text_atomically(protocol,
+                          text.replace(text.find(named), named.size(), "\"scene\": \"../scenes/delay.json\""));
+    refused("preregister " + protocol.string() + " -o " + scene.string(), "found the input");
 }
 
 TEST_CASE("command study levels: a table of rejections and coverage, theirs labelled") {

@@ -122,6 +122,20 @@ TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is fou
     CHECK(contains(metres.err, "the device's size"));
 }
 
+TEST_CASE("tangible: explain names the stages of a scene's soft device, and what a tick of it costs here") {
+    const StripFolder folder;
+    const files::Json json = result_of(palpa_with("explain " + folder.path("scene.json") + " --json"));
+    REQUIRE(json.contains("tangible"));
+    const files::Json& stages = json["tangible"]["stages"];
+    REQUIRE(stages.size() == 3);
+    CHECK(stages[0]["name"] == "world");
+    CHECK(stages[1]["name"] == "inverse");
+    CHECK(contains(stages[1]["fidelity"].get<std::string>(), "linear: the linear model about the pretension"));
+    CHECK(contains(stages[1]["error"].get<std::string>(), "2.9 % (strip)"));
+    CHECK(stages[1]["cost_us"].get<double>() > 0.0);
+    CHECK(contains(palpa_with("explain " + folder.path("scene.json")).out, "soft device strip"));
+}
+
 TEST_CASE("tangible: a device with a wrong key, and one that is not there, are named") {
     const StripFolder strip;
     files::Json json = files::read_json(strip.folder / "strip.json");

@@ -112,6 +112,30 @@ TEST_CASE("part edits: a second session writes a file of its own, and the first 
     CHECK(operations_of(home.folder / "bar.json") == 1);
 }
 
+TEST_CASE("part edits: an undone first change is out of its file too, and is not offered again") {
+    const Home home;
+    {
+        Desk desk(home.scene());
+        wish(PartWish::Kind::edit, desk);
+        wish(PartWish::Kind::undo, desk);
+        CHECK(design_of(desk) == home.folder / "bar.json");
+        CHECK(operations_of(home.edited()) == 1);
+    }
+    {
+        Desk desk(home.scene());
+        follow_parts(desk.window, desk.gui, desk.app);
+        CHECK_FALSE(desk.app.view.part.earlier);
+        wish(PartWish::Kind::edit, desk);
+        wish(PartWish::Kind::undo, desk);
+        wish(PartWish::Kind::redo, desk);
+        CHECK(design_of(desk) == home.edited("-2"));
+        CHECK(operations_of(home.edited("-2")) == 2);
+    }
+    Desk desk(home.scene());
+    follow_parts(desk.window, desk.gui, desk.app);
+    CHECK(desk.app.view.part.earlier);
+}
+
 TEST_CASE(
     "part edits: a push button has no finite cells to wait for, and the screen says that its shape does not answer") {
     const Home home;

@@ -6,8 +6,10 @@
 
 #include "app/screens/history_screen.h"
 #include "scene/advance.h"
+#include "scene/mapping.h"
 #include "tests/app/live/desk.h"
 #include "tests/app/screens/typing.h"
+#include "tests/close_to.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -255,6 +257,59 @@ TEST_CASE("live: the key that closes the list of keys does not leave the guided 
     CHECK_FALSE(escape_leaves());
     CHECK_FALSE(desk.app.view.help);
     CHECK(escape_leaves());
+}
+
+TEST_CASE(
+    "live: what a finished trial reveals follows the controls to the other side, and its samples stay as they were") {
+    Desk desk("");
+    desk.keeper.busy = false;
+    frames(desk, 2);
+    desk.sample(Phase::down);
+    desk.sample(Phase::up);
+    act(Action::finish, desk.window, desk.app);
+    REQUIRE(std::holds_alternative<Reviewing>(desk.app.doing));
+    const scene::State& state = desk.app.session.state;
+    const double before_px = state.screen.x_px;
+    const double before_mm = 1e3 * tissue_of_px(state.view, {state.screen.x_px, 0.0}).x();
+    const std::int64_t samples = state.counters.samples;
+    desk.app.settings.left_handed = true;
+    note_resize(desk.window, desk.gui, desk.app);
+    CHECK(state.screen.x_px < before_px - 10.0);
+    CHECK(1e3 * tissue_of_px(state.view, {state.screen.x_px, 0.0}).x() == close_to(before_mm));
+    CHECK(state.counters.samples == samples);
+}
+
+TEST_CASE(
+    "live: in the question before marks are lost Enter presses the button that a ring shows, else ends the trial") {
+    for (const bool ring : {false, true}) {
+        CAPTURE(ring);
+        Desk desk("");
+        frames(desk, 2);
+        desk.sample(Phase::down);
+        desk.sample(Phase::up);
+        act(Action::mark, desk.window, desk.app);
+        Wishes close;
+        close.quit = true;
+        carry_out(close, desk.window, desk.gui, desk.app);
+        REQUIRE(desk.app.asked);
+        const auto shown = [&](int count) {
+            std::vector<Sample> samples;
+            for (int i = 0; i < count; ++i) {
+                desk.window.poll(0.0, samples);
+                carry_out(desk.show_frame(), desk.window, desk.gui, desk.app);
+            }
+        };
+        shown(3);
+        if (ring) tap(desk.window, SDLK_UP);  // from the end of the trial to its continuation
+        shown(4);
+        REQUIRE(desk.app.asked);
+        CHECK(desk.gui.shows_focus() == ring);
+        tap(desk.window, SDLK_RETURN);
+        shown(6);
+        CHECK_FALSE(desk.app.asked);
+        CHECK(desk.app.quit == !ring);
+        CHECK(desk.app.session.trial.marks.size() == 1);
+    }
 }
 
 TEST_CASE("live: a scene with a random turn is drawn in all eight, another one stays as it is") {

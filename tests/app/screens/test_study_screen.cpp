@@ -1,5 +1,6 @@
 // Who types a code never types into nothing. Off screen.
 
+#include <algorithm>
 #include <doctest/doctest.h>
 
 #include "tests/app/live/desk.h"
@@ -109,6 +110,62 @@ TEST_CASE("study screen: a second Enter after the code does not leave the questi
     tap(desk.window, SDLK_RETURN);
     live_frames(desk, 5);
     CHECK_FALSE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+}
+
+TEST_CASE("study screen: Enter chooses the answer that the ring is on, and does not leave the page") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_questions(folder, desk);
+    for (const char digit : {'4', '4'}) type(desk.window, digit);
+    live_frames(desk, 4);
+    tap(desk.window, SDLK_TAB);
+    live_frames(desk, 6);
+    tap(desk.window, SDLK_DOWN);
+    live_frames(desk, 6);
+    REQUIRE(desk.gui.shows_focus());
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 6);
+    CHECK(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    const std::vector<std::string>& answers = desk.app.view.study.answers;
+    CHECK(answers.at(0) == "44");
+    CHECK(std::any_of(answers.begin() + 1, answers.end(), [](const std::string& answer) { return !answer.empty(); }));
+}
+
+TEST_CASE("study screen: Ctrl+Q closes the study from the code's field too, and types no letter") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.app.doing =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    live_frames(desk, 5);
+    REQUIRE_FALSE(desk.app.quit);
+    tap(desk.window, SDLK_q, KMOD_LCTRL);
+    live_frames(desk, 3);
+    CHECK(desk.app.quit);
+    CHECK(desk.app.view.study.code == "01");
+}
+
+TEST_CASE(
+    "study screen: after somebody has refused to take part, a code that is typed replaces the one that is offered") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
+    protocol.consent = "You press on surfaces.";
+    desk.app.doing = open_study_run(protocol, folder / "log", "");
+    live_frames(desk, 5);
+    const auto type_code = [&](const char* code) {
+        for (const char* letter = code; *letter != '\0'; ++letter) type(desk.window, *letter);
+        live_frames(desk, 5);
+    };
+    type_code("07");
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    REQUIRE(std::holds_alternative<step::Consent>(study_of(desk.app.doing)->step));
+    type(desk.window, '2');  // no
+    live_frames(desk, 5);
+    REQUIRE(std::holds_alternative<step::Code>(study_of(desk.app.doing)->step));
+    type_code("11");
+    CHECK(desk.app.view.study.code == "11");
 }
 
 TEST_CASE("study screen: answers that are not logged yet are not closed over without a question") {

@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <regex>
+#include <stdlib.h>
 #include <string>
+#include <time.h>
 #include <vector>
 
 #include "app/screens/history_screen.h"
@@ -111,6 +113,17 @@ TEST_CASE("words: every word is shown somewhere") {
                     : stands(all, "words::k" + name)));
     }
     CHECK(found > 150);
+}
+
+TEST_CASE("words: the history tells the time of the clock on the wall") {
+    const char* zone = ::getenv("TZ");
+    const std::string before = zone != nullptr ? zone : "";
+    ::setenv("TZ", "EST5", 1);
+    ::tzset();
+    CHECK(local_time_text("2026-11-25T03:31:09Z") == "2026-11-24 22:31");
+    CHECK(local_time_text("some day") == "some day");
+    zone != nullptr ? ::setenv("TZ", before.c_str(), 1) : ::unsetenv("TZ");
+    ::tzset();
 }
 
 TEST_CASE("words: the history counts nodules, and does not count to 0 where there are none") {

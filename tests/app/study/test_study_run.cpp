@@ -349,6 +349,15 @@ TEST_CASE("study run: a protocol without questions takes a code") {
     CHECK(contains(read_text(folder / "log/participants.tsv"), "\nsub-P7\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t"));
 }
 
+TEST_CASE("study run: the code that is offered follows the highest number") {
+    const TemporaryFolder folder;
+    const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
+    StudyRun run = open_study_run(protocol, folder / "log", "");
+    enter_code("07", run);
+    CHECK(free_code(run) == "08");
+    CHECK(free_code(open_study_run(protocol, folder / "log", "1234567890")) == "08");  // a number that nobody counts
+}
+
 TEST_CASE("study run: the field has the letters again after a code that is not taken") {
     const TemporaryFolder folder;
     StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
