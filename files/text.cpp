@@ -45,8 +45,8 @@ namespace {
 using Pieces = std::initializer_list<std::string_view>;
 
 // Opens a file that has no name until give_name(): what a killed run wrote goes with the run. -1 where there is no such file.
-int open_unnamed(const std::filesystem::path& folder) {
-#ifdef O_TMPFILE
+int open_unnamed([[maybe_unused]] const std::filesystem::path& folder) {
+#if defined(O_TMPFILE) && !defined(__EMSCRIPTEN__)
     if (::access("/proc/self/fd", X_OK) == 0)
         return ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0644);
 #endif

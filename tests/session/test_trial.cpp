@@ -53,6 +53,17 @@ struct Trainee {
         for (int i = -8; i <= 8; ++i) sample(Phase::move, x_mm + 0.5 * i, y_mm, pressure);
         sample(Phase::up, x_mm + 4.0, y_mm, 0.0);
     }
+    void make_window_small() {
+        Sample resize;
+        resize.t_host_s = t_s += 0.01;
+        resize.phase = Phase::ui;
+        resize.action = Action::resize;
+        resize.x_px = 300.0;
+        resize.y_px = 0.0;
+        resize.width_px = 500.0;
+        resize.height_px = 420.0;
+        take_sample(resize, session);
+    }
     void act(Action action, double x_mm = 0.0, double y_mm = 0.0) { sample(Phase::ui, x_mm, y_mm, kMissing, action); }
 };
 
@@ -141,15 +152,7 @@ TEST_CASE("trial: a window that changes its size after a press leaves the place 
     person.stroke(40.0, 30.0, 0.5);
     const auto place = [&] { return tissue_of_px(person.session.state.view, *person.session.trial.last_px); };
     const Eigen::Vector2d pressed_m = place();
-    Sample resize;
-    resize.t_host_s = person.t_s += 0.01;
-    resize.phase = Phase::ui;
-    resize.action = Action::resize;
-    resize.x_px = 300.0;
-    resize.y_px = 0.0;
-    resize.width_px = 500.0;
-    resize.height_px = 420.0;
-    take_sample(resize, person.session);
+    person.make_window_small();
     CHECK((place() - pressed_m).norm() < 1e-9);
     CHECK(on_tissue(person.session.state.view, place()));
 }
@@ -160,15 +163,7 @@ TEST_CASE("trial: a window that changes its size under a pen that presses adds n
     for (int i = 1; i <= 10; ++i) person.sample(Phase::move, 40.0 + i, 30.0, 0.5);
     const double way_m = person.session.trial.pressed_m;
     CHECK(way_m == close_to(0.01).epsilon(0.1));
-    Sample resize;
-    resize.t_host_s = person.t_s += 0.01;
-    resize.phase = Phase::ui;
-    resize.action = Action::resize;
-    resize.x_px = 300.0;
-    resize.y_px = 0.0;
-    resize.width_px = 500.0;
-    resize.height_px = 420.0;
-    take_sample(resize, person.session);
+    person.make_window_small();
     person.sample(Phase::move, 80.0, 60.0, 0.5);  // where the tissue is now
     CHECK(person.session.trial.pressed_m == way_m);
     CHECK(person.session.trial.path.back().begins);
