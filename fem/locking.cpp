@@ -46,8 +46,8 @@ std::string locking_warning(const Problem& problem) {
     }
     return std::string(name_of(problem.element)) + " locks at poisson " + files::number_text(poisson) +
            ": on the slab of docs/fem.md it is " + files::short_number(row->factor) + " times too stiff at " +
-           files::short_number(row->poisson) + "; hex8-bbar does not lock" +
-           (problem.element == Element::tet4 ? " (it needs hexahedra)" : "");
+           files::number_text(row->poisson) + (poisson > rows.back().poisson ? ", and more here" : "") +
+           "; hex8-bbar does not lock" + (problem.element == Element::tet4 ? " (it needs hexahedra)" : "");
 }
 
 }  // namespace palpa::fem

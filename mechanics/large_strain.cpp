@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "mechanics/banded.h"
 #include "mechanics/error.h"
@@ -233,7 +234,8 @@ LargeSolution solve_large(const LargeProblem& problem, const Matrix3Xd& load_N, 
     LargeSolution out;
     out.equations = reduction.equations;
     out.solver = chosen_solver(A, options);
-    Newton newton{body, reduction, load_N, options, SparseCholesky(out.solver), std::move(pattern), out, {}};
+    SparseCholesky cholesky(out.solver);  // before the aggregate, as in statics.cpp
+    Newton newton{body, reduction, load_N, options, std::move(cholesky), std::move(pattern), out, {}};
     if (reduction.equations > 0) newton.cholesky.analyse(A);
 
     Matrix3Xd u_m = Matrix3Xd::Zero(3, load_N.cols());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "mechanics/error.h"
 #include "mechanics/text.h"
@@ -48,7 +49,10 @@ double solve_refined(const Factored& factored, const Eigen::VectorXd& b, Eigen::
 
 Factored factorise(const Problem& problem, SolverKind solver) {
     check_materials(problem.materials);
-    Factored out{{}, {}, {}, SparseCholesky(solver), check_mesh(problem.mesh), 0.0, 0.0};
+    // before the aggregate: GCC 12 destroys its first members twice if a later one throws
+    SparseCholesky cholesky(solver);
+    auto checked = check_mesh(problem.mesh);
+    Factored out{{}, {}, {}, std::move(cholesky), std::move(checked), 0.0, 0.0};
     check_supported(problem.mesh, problem.supports);
 
     const auto start = std::chrono::steady_clock::now();

@@ -67,6 +67,20 @@ void print_recorded(const RecordArguments& arguments, const files::Json& result)
                 word(result["file"].get_ref<const std::string&>()).c_str(), level_options(arguments).c_str());
 }
 
+// Options of another kind of sensor would have no effect.
+void check_of_sensor(const CLI::App& command, const std::string& sensor) {
+    struct Option {
+        const char* name;
+        const char* kind;
+    };
+    for (const Option& one :
+         {Option{"--counts-per-N", "netft:"}, Option{"--axis", "netft:"}, Option{"--N-per-count", "serial:"},
+          Option{"--baud", "serial:"}, Option{"--newton", "typed"}}) {
+        if (command.count(one.name) > 0 && sensor.rfind(one.kind, 0) != 0)
+            throw files::bad_input(one.name, "", "--sensor " + sensor, std::string("--sensor ") + one.kind);
+    }
+}
+
 void record(RecordArguments& arguments) {
     calibration::RecordArguments& record = arguments.record;
     files::check_output_folder(record.folder);
@@ -157,7 +171,10 @@ void add_calibrate_record(CLI::App& calibrate) {
         ->check(CLI::Range(0.0, 1e6));
     command->add_flag("--resume", options.resume, "continue the session in the folder");
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
-    command->callback([arguments] { record(*arguments); });
+    command->callback([command, arguments] {
+        check_of_sensor(*command, arguments->record.sensor);
+        record(*arguments);
+    });
 }
 
 }  // namespace palpa::app

@@ -25,7 +25,8 @@ namespace {
 class LevelStream : public LevelSource {
   public:
     explicit LevelStream(const std::string& path) : path_(path) {
-        fd_ = path == "-" ? ::dup(0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+        fd_ = path == "-" ? ::dup(0)
+                          : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // a pipe may have no writer yet
         if (fd_ < 0) throw files::InputError(path + ": cannot be read: " + std::strerror(errno));
         struct stat status {};
         if (::fstat(fd_, &status) == 0 && S_ISDIR(status.st_mode)) {
@@ -40,7 +41,7 @@ class LevelStream : public LevelSource {
         if (::poll(&waiting, 1, static_cast<int>(std::ceil(1e3 * wait_s))) <= 0) return true;
         std::array<char, 4096> bytes;
         const ssize_t n = ::read(fd_, bytes.data(), bytes.size());
-        if (n < 0 && errno == EINTR) return true;
+        if (n < 0 && (errno == EINTR || errno == EAGAIN)) return true;
         if (n <= 0) return false;
         const double now_s = devices::steady_s();
         for (ssize_t i = 0; i < n; ++i) {

@@ -213,7 +213,12 @@ void add_generate(CLI::App& maps) {
             if (arguments->method == "analytic" && command->count(name) > 0)
                 throw files::InputError(std::string(name) + ": found with --method analytic, expected --method fem");
         }
-        stiffnessmaps::generate_map(generate_options(*arguments));
+        const stiffnessmaps::GenerateOptions asked = generate_options(*arguments);
+        if (asked.analytic && asked.part)
+            throw files::InputError(
+                "SLURM_ARRAY_TASK_ID or OMPI_COMM_WORLD_RANK: found with --method analytic, expected "
+                "one process, since such a map has no parts");
+        stiffnessmaps::generate_map(asked);
     });
 }
 

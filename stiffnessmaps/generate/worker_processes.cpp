@@ -12,6 +12,8 @@
 #include <thread>
 #include <unistd.h>
 
+#include "mechanics/blas_memory.h"
+
 namespace palpa::stiffnessmaps {
 namespace {
 
@@ -35,6 +37,8 @@ pid_t start(const Arguments& arguments) {
 }  // namespace
 
 void run_jobs(const std::vector<Arguments>& calls, int at_a_time, const std::function<void()>& meanwhile) {
+    // the jobs need it too, and without it a fork would wait for a thread of OpenBLAS for ever
+    mechanics::require_blas_memory();
     std::size_t next = 0;
     std::vector<pid_t> running;
     bool failed = false;

@@ -28,6 +28,8 @@ TEST_CASE("locking: tet4 and hex8 near 0.5 are told of, with a figure; hex8-bbar
     CHECK(contains(said("hex8", 0.47), "1.07 times"));
     CHECK(
         contains(said("hex8i", 0.4999), "hex8i locks at poisson 0.4999: on the slab of docs/fem.md it is 1.13 times"));
+    CHECK(contains(said("hex8i", 0.49999), "1.47 times too stiff at 0.49999; hex8-bbar"));
+    CHECK(contains(said("hex8i", 0.4999999), "at 0.49999, and more here"));
     CHECK(said("hex8i", 0.495).empty());
     CHECK(said("tet4", 0.45).empty());
     CHECK(said("hex8", 0.3).empty());

@@ -148,6 +148,10 @@ TEST_CASE("record: a session without points is begun again without --resume") {
         shell(kRecord + "-o " + (folder / "t").string() + " --sensor typed --levels " + folder.path().string());
     CHECK(levels.status == 2);
     CHECK(contains(levels.err, "found a folder, expected a file or a pipe"));
+    const Called other =
+        shell(kRecord + "-o " + (folder / "t").string() + " --sensor typed --baud 9600 --levels /dev/null");
+    CHECK(other.status == 2);
+    CHECK(contains(other.err, "--baud: found --sensor typed, expected --sensor serial:"));
 }
 
 TEST_CASE("record: two recordings at once do not share a folder") {
@@ -263,7 +267,7 @@ TEST_CASE("record: levels outside the range are named, since no point can follow
     const Called raw = shell("sleep 2 | " + kRecord + "-o " + (folder / "s").string() + " --sensor typed --levels " +
                              (folder / "levels").string() + " --json");
     CAPTURE(raw.err);
-    CHECK(raw.status == 0);
+    CHECK(raw.status == 1);  // no point came of it
     CHECK(contains(raw.err, "found level 2048, expected 0 to 1: no point follows from it; --level-range says"));
     CHECK(parse_json(raw.out, "stdout")["outside_range"] == 3);
 }

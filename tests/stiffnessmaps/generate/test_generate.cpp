@@ -44,7 +44,8 @@ class Bench : public TemporaryFolder {
   public:
     Bench() { write_text_atomically(*this / "p.json", kPhantom); }
     std::string call(const std::string& map, const std::string& options) const {
-        return " " PALPA_PROGRAM " maps generate " + (*this / "p.json").string() + " --coarseness 4 -o " +
+        const char* coarse = contains(options, "analytic") ? "" : " --coarseness 4";
+        return " " PALPA_PROGRAM " maps generate " + (*this / "p.json").string() + coarse + " -o " +
                (*this / map).string() + " " + options;
     }
     Called shell(const std::string& command) const {
