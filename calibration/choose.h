@@ -14,9 +14,8 @@ struct Candidate {
     ErrorModel error = ErrorModel::newton;  // the error model of the score
 };
 
-// Returns the fold of each point: its repeat if there are at least two, and three levels are left without any of them; else
-// one of five (for fewer than 10 points, one
-// of its own), in turn along the level.
+// Returns the fold of each point: its repeat if there are at least two, and three levels are left without any of them;
+// else one of five (for fewer than 10 points, one of its own), in turn along the level.
 std::vector<int> folds_of(const FitPoints& points);
 
 // Returns all models (or one) with both error models (or one), the cubic with several numbers of knots. Models with too

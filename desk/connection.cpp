@@ -21,8 +21,10 @@ namespace palpa::desk {
 namespace {
 
 constexpr double kSlice_s = 0.2;  // how often a waiting connection looks whether the desk is being ended
-constexpr double kLinger_s = 1.0;
-constexpr std::size_t kLinger_bytes = std::size_t{1} << 20;
+// A client that has not read the answer yet loses it if the desk closes while the client still sends: what it sends after the
+// answer is taken for so long without a pause, and in all.
+constexpr double kLingerPause_s = 1.0;
+constexpr double kLinger_s = 30.0;
 
 std::string tls_trouble() {
     std::array<char, 256> text{};
@@ -264,15 +266,15 @@ void Connection::linger() {
     if (ssl_) SSL_shutdown(ssl_.get());
     ::shutdown(fd_, SHUT_WR);
     broken_ = true;  // nothing more is sent
-    std::array<char, 4096> buffer;
-    std::size_t taken = 0;
+    std::vector<char> buffer(std::size_t{1} << 16);
     const double until_s = files::steady_s() + kLinger_s;
-    while (taken < kLinger_bytes && files::steady_s() < until_s && !ending_) {
+    double heard_s = files::steady_s();
+    for (double now_s = heard_s; now_s < until_s && now_s < heard_s + kLingerPause_s && !ending_;
+         now_s = files::steady_s()) {
         pollfd what{fd_, POLLIN, 0};
         if (::poll(&what, 1, static_cast<int>(1e3 * kSlice_s)) <= 0) continue;
-        const ssize_t n = ::recv(fd_, buffer.data(), buffer.size(), 0);
-        if (n <= 0) return;
-        taken += static_cast<std::size_t>(n);
+        if (::recv(fd_, buffer.data(), buffer.size(), 0) <= 0) return;
+        heard_s = files::steady_s();
     }
 }
 

@@ -29,6 +29,7 @@ struct ArmFeedback {
     double has_sensor = 0.0;        // 1 or 0
     double round_trip_s = 0.0;      // command there and feedback back, without the time that the arm held it
     double age_s = 0.0;             // from the arrival to when the loop read it
+    double faulty = 0.0;            // 1: the arm says that it has a fault of its own
 };
 
 enum class ArmMode { rest = 0, force = 1, position = 2 };

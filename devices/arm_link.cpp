@@ -172,6 +172,7 @@ bool ArmLink::take(std::span<const std::uint8_t> bytes, double arrival_s, ArmFee
     if (arrival == Arrival::duplicate || arrival == Arrival::late) return false;
     ++health_.feedback.received;
     health_.arm_rested += packet.state == 1;
+    out.faulty = packet.state == 2 ? 1.0 : 0.0;
     out.time_s = arrival_s;
     out.device_time_s = packet.device_time_s;
     out.x_m = packet.x_m;

@@ -19,6 +19,7 @@ void set_fault(Fault fault, Guard& guard) noexcept {
 Fault fault_now(const Limits& limits, const ArmFeedback* in, const Guard& guard) noexcept {
     if (guard.now_s - guard.heard_s > limits.silence_s) return Fault::silence;
     if (in == nullptr) return Fault::none;
+    if (in->faulty > 0.5) return Fault::arm_error;
     const bool possible =
         in->depth_m >= limits.lowest_m - limits.range_slack_m && in->depth_m <= limits.deepest_m + limits.range_slack_m;
     if (!possible) return Fault::out_of_range;  // also for NaN
@@ -78,6 +79,8 @@ std::string_view text(Fault fault) {
             return "the program has ended";
         case Fault::guard_gone:
             return "the guard has ended";
+        case Fault::arm_error:
+            return "the arm reports a fault of its own";
     }
     return "";
 }

@@ -28,8 +28,9 @@ enum class Fault : std::uint8_t {
     loop_silent,      // nothing came from the loop for 100 ms
     parent_gone,      // the program that runs the loop has ended
     guard_gone,       // the guard's process has ended
+    arm_error,        // the arm says that it has a fault of its own
 };
-inline constexpr std::size_t kFaults = 12;
+inline constexpr std::size_t kFaults = 13;
 std::string_view text(Fault fault);
 
 // Whether the fault stays until release(). Silence and too_fast pass by themselves.

@@ -18,6 +18,13 @@ using Eigen::Index;
 
 constexpr double kMostNodes = 400'000;  // 161,000 nodes take 4.9 GB to factor
 
+// Reads the place of the box's corner, the origin if it is absent.
+Eigen::Vector3d read_origin_m(files::JsonReader& box) {
+    if (!box.has("origin_mm")) return Eigen::Vector3d::Zero();
+    const auto mm = box.numbers("origin_mm", 3, {-1e6, 1e6});
+    return 1e-3 * Eigen::Vector3d(mm[0], mm[1], mm[2]);
+}
+
 Box read_box(files::JsonReader box) {
     box.only({"size_mm", "elements", "grading", "origin_mm"});
     const auto size_mm = box.numbers("size_mm", 3, {0.0, 1e6, true});
@@ -37,23 +44,21 @@ Box read_box(files::JsonReader box) {
     }
     if (auto grading = box.optional_object("grading")) {
         grading->only({"centre_mm", "finest_mm"});
-        const auto centre_mm = grading->numbers("centre_mm", 2, files::kNotNegative);
+        auto centre_mm = grading->numbers("centre_mm", 2, files::kAnyNumber);
+        const Eigen::Vector3d origin_mm = 1e3 * read_origin_m(box);
         for (std::size_t axis = 0; axis < 2; ++axis) {
-            if (centre_mm[axis] <= size_mm[axis]) continue;
-            grading->fail("centre_mm", files::short_number(centre_mm[axis]),
-                          "a place in the box, 0 to " + files::short_number(size_mm[axis]));
+            const double low_mm = origin_mm[static_cast<Eigen::Index>(axis)];
+            const double given_mm = centre_mm[axis];
+            centre_mm[axis] -= low_mm;  // in the box's own frame
+            if (centre_mm[axis] >= 0.0 && centre_mm[axis] <= size_mm[axis]) continue;
+            grading->fail("centre_mm", files::short_number(given_mm),
+                          "a place in the box, " + files::short_number(low_mm) + " to " +
+                              files::short_number(low_mm + size_mm[axis]));
         }
         out.grading =
             Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * grading->number("finest_mm", files::kPositive)};
     }
     return out;
-}
-
-// Reads the place of the box's corner, the origin if it is absent.
-Eigen::Vector3d read_origin_m(files::JsonReader box) {
-    if (!box.has("origin_mm")) return Eigen::Vector3d::Zero();
-    const auto mm = box.numbers("origin_mm", 3, {-1e6, 1e6});
-    return 1e-3 * Eigen::Vector3d(mm[0], mm[1], mm[2]);
 }
 
 Bellows read_bellows(files::JsonReader json) {
@@ -312,9 +317,11 @@ CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& fo
             json.fail("mesh.bellows", std::to_string(out.mesh.nodes_m.cols()) + " nodes",
                       "at most " + files::short_number(kMostNodes));
     } else {
-        const Box box = read_box(mesh_json.object("box"));
+        files::JsonReader box_json = mesh_json.object("box");
+        const Eigen::Vector3d origin_m = read_origin_m(box_json);
+        const Box box = read_box(box_json);
         with_key(json.file(), "mesh.box", "a box that can be meshed", [&] { out.mesh = hex_box(box); });
-        out.mesh.nodes_m.colwise() += read_origin_m(mesh_json.object("box"));
+        out.mesh.nodes_m.colwise() += origin_m;
         if (element == Element::tet4) out.mesh = split_to_tets(out.mesh);
     }
     check_cells(out, json);

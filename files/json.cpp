@@ -145,19 +145,30 @@ bool JsonReader::boolean(std::string_view key, bool otherwise) {
     return value->get<bool>();
 }
 
-std::string JsonReader::text(std::string_view key) {
-    const Json& value = need(key, "a text");
-    if (!value.is_string()) fail(key, described(value), "a text");
+std::string JsonReader::text_in(const Json& value, std::string_view key, const std::string& expected) const {
+    if (!value.is_string()) fail(key, described(value), expected);
     const auto& text = value.get_ref<const std::string&>();
     // a zero byte would end the text if it is used as a file's name, so that another file would be opened
     if (text.find('\0') != std::string::npos)
-        fail(key, described(value) + " with a zero byte (\\u0000)", "a text without it");
+        fail(key, described(value) + " with a zero byte (\\u0000)", expected + " without it");
     return text;
 }
+
+std::string JsonReader::text(std::string_view key) { return text_in(need(key, "a text"), key, "a text"); }
 
 std::string JsonReader::text(std::string_view key, std::string otherwise) {
     if (has(key)) return text(key);
     return otherwise;
+}
+
+std::vector<std::string> JsonReader::texts(std::string_view key, std::size_t fewest, const std::string& what) {
+    const std::string expected =
+        "an array of " + (fewest > 1 ? std::to_string(fewest) + " " + what + " or more" : what);
+    const Json& value = need(key, expected);
+    if (!value.is_array() || value.size() < fewest) fail(key, described(value), expected);
+    std::vector<std::string> out;
+    for (const Json& item : value) out.push_back(text_in(item, key, what));
+    return out;
 }
 
 std::size_t JsonReader::choice(std::string_view key, std::initializer_list<std::string_view> choices) {

@@ -48,6 +48,8 @@ class JsonReader {
     bool boolean(std::string_view key, bool otherwise);
     std::string text(std::string_view key);
     std::string text(std::string_view key, std::string otherwise);
+    // An array of texts, at least `fewest`; `what` names them in the messages ("names of actuators").
+    std::vector<std::string> texts(std::string_view key, std::size_t fewest, const std::string& what);
     // Returns the index of the text in `choices`.
     std::size_t choice(std::string_view key, std::initializer_list<std::string_view> choices);
     // `count` = 0 means any number of values, at least one.
@@ -68,6 +70,7 @@ class JsonReader {
   private:
     const Json& need(std::string_view key, std::string_view expected);
     const Json* find(std::string_view key);
+    std::string text_in(const Json& value, std::string_view key, const std::string& expected) const;
     std::string where_of(std::string_view key) const;
 
     const Json* value_;

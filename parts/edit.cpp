@@ -79,17 +79,19 @@ bool redo_edit(EditedPart& edited) {
     return true;
 }
 
+files::Json moved_part(files::Json json, const std::filesystem::path& file, const std::filesystem::path& copy) {
+    const std::filesystem::path from = std::filesystem::absolute(file).parent_path();
+    const std::filesystem::path to = std::filesystem::absolute(copy).parent_path();
+    if (from == to) return json;
+    for (const char* key : {"shape", "supports", "button"}) {
+        if (json.contains(key)) rename_files(from, to, json[key]);
+    }
+    return json;
+}
+
 void save_part(const EditedPart& edited, const std::filesystem::path& path) {
     check_shape(edited.part);
-    files::Json json = edited.json;
-    const std::filesystem::path from = std::filesystem::absolute(edited.part.file).parent_path();
-    const std::filesystem::path to = std::filesystem::absolute(path).parent_path();
-    if (from != to) {
-        for (const char* key : {"shape", "supports", "button"}) {
-            if (json.contains(key)) rename_files(from, to, json[key]);
-        }
-    }
-    files::write_text_atomically(path, files::json_text(json));
+    files::write_text_atomically(path, files::json_text(moved_part(edited.json, edited.part.file, path)));
 }
 
 }  // namespace palpa::parts

@@ -25,8 +25,11 @@ std::int64_t edit(const files::Json& operation, EditedPart& edited);
 bool undo_edit(EditedPart& edited);
 bool redo_edit(EditedPart& edited);
 
-// Writes the part as JSON, whole or not at all, without the comments of the file it came from. The names of STL,
-// run and curve files stay those of the same files from a folder of another name. Throws InputError as check_shape() does, and
+// Returns the JSON of a part's file as it stands in a copy elsewhere: the names of STL, run and curve files stay those of
+// the same files from a folder of another name.
+files::Json moved_part(files::Json json, const std::filesystem::path& file, const std::filesystem::path& copy);
+
+// Writes the part as moved_part() says, whole or not at all, without the comments of the file it came from. Throws InputError as check_shape() does, and
 // std::runtime_error if the file cannot be written.
 void save_part(const EditedPart& edited, const std::filesystem::path& path);
 

@@ -49,8 +49,8 @@ struct Part {
     std::vector<PartSupport> supports;
     std::vector<PartLoad> loads;
     std::optional<mechanics::Button> button;
-    std::optional<int> axis;  // of the beam that the part is taken for; 0 x, 1 y, 2 z
-    std::vector<std::string> warnings;
+    std::optional<int> axis;            // of the beam that the part is taken for; 0 x, 1 y, 2 z
+    std::vector<std::string> warnings;  // begin with the part's name
 };
 
 // Reads a part and makes its voxels. Throws InputError with file, key, what was found and what was expected: also for an

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "files/input_error.h"
+#include "files/text.h"
 #include "mechanics/error.h"
 #include "parts/region_file.h"
 #include "parts/runs_file.h"
@@ -67,12 +68,34 @@ VoxelEdit read_edit(files::JsonReader& json, const std::string& key, const Part&
     return edit;
 }
 
+// Says where a solid that is added reaches out of the space of the voxels: often its unit is another.
+std::string cut_off_text(const VoxelEdit& edit, const Voxels& voxels) {
+    const auto* added = std::get_if<mechanics::SolidRegion>(&edit.region.shape);
+    if (added == nullptr || edit.kind != EditKind::add) return "";
+    const auto mm = [](double metres) { return files::short_number(1e3 * metres); };
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double pitch_m = voxels.frame.pitch_m;
+        const double low_m = voxels.frame.origin_m[c], high_m = low_m + pitch_m * voxels.size[c];
+        const double from_m = added->solid->low_m[c], to_m = added->solid->high_m[c];
+        if (from_m < low_m - 0.5 * pitch_m || to_m > high_m + 0.5 * pitch_m) {
+            return std::string("the STL file reaches from ") + mm(from_m) + " to " + mm(to_m) + " mm along " +
+                   "xyz"[c] + ", and is cut off at " + mm(low_m) + " and " + mm(high_m) + " mm: is its unit right?";
+        }
+    }
+    return "";
+}
+
 }  // namespace
 
 std::int64_t apply_operation(files::JsonReader& json, Part& part) {
     json.only({"add", "remove", "permute", "sculpt", "runs", "material", "from"});
     const std::string key = operation_of(json);
-    if (key != "runs") return apply(read_edit(json, key, part), part.voxels, part.history);
+    if (key != "runs") {
+        const VoxelEdit edit = read_edit(json, key, part);
+        const std::string cut_off = cut_off_text(edit, part.voxels);
+        if (!cut_off.empty()) part.warnings.push_back(part.name + ": " + cut_off);
+        return apply(edit, part.voxels, part.history);
+    }
     const std::filesystem::path file = beside(json, json.text("runs"));
     json.finish();
     return overlay(read_runs(file, part.voxels, static_cast<int>(part.materials.size())), part.voxels, part.history);

@@ -61,6 +61,7 @@ void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
     if (tissue.map.source.kind == stiffnessmaps::SourceKind::simulated) {
         plan.notes.push_back("the tissue is simulated, not recorded: " + tissue.map.source.how);
     }
+    if (!plan.nodules_known) plan.notes.push_back("the map does not say which nodules there are: marks are not scored");
     if (plan.nodules.size() < tissue.map.nodules.size()) {
         plan.notes.push_back(
             "detected nodules of the map are not asked for: where nodules were placed, those alone count");
@@ -125,6 +126,7 @@ void leave_out_nodules(stiffnessmaps::Map& map) {
     for (std::vector<float>* layers_N : {&map.normal_N, &map.tangential_x_N, &map.tangential_y_N})
         level_out(*layers_N, map.n_cells());
     map.nodules.clear();
+    map.nodules_known = true;
 }
 
 void sink(const MapTissue& tissue, const Press& press, MapWork& work, Contact& contact) {
@@ -181,6 +183,7 @@ void describe(const MapTissue& tissue, const Scene& scene, Plan& plan) {
     plan.tissue_name = map.name;
     plan.source = map.source.kind;
     plan.nodules = nodules_to_find(map);
+    plan.nodules_known = map.nodules_known || !map.nodules.empty();
     plan.greatest_force_N = scene.stiffness_scale * stiffnessmaps::force_range(map).highest_N;
     plan.greatest_depth_m = map.depths_m.back();
     for (const int third : {1, 2})

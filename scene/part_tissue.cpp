@@ -9,8 +9,6 @@ namespace {
 using parts::Response;
 using parts::StationPlace;
 
-bool in_plane(const PartTissue& tissue) { return tissue.direction_m[0] != 0.0 || tissue.direction_m[1] != 0.0; }
-
 Eigen::Vector2d direction_of(const PartTissue& tissue) { return {tissue.direction_m[0], tissue.direction_m[1]}; }
 
 // The axis of the plane along which the load is largest, and its sign.
@@ -159,6 +157,12 @@ void grip_part(const PartTissue& tissue, const Press& press, PartWork& work) {
 }
 
 }  // namespace
+
+bool in_plane(const PartTissue& tissue) { return tissue.direction_m[0] != 0.0 || tissue.direction_m[1] != 0.0; }
+
+bool is_on_part(const PartDesign& design, const Eigen::Vector2d& p_m) {
+    return material_below(design, in_design(design, p_m));
+}
 
 double RiseOnPart::resistance_N(const Eigen::Vector2d& p_m) const {
     return stiffness_N_per_m * std::max(0.0, (p_m - from_m).dot(direction));

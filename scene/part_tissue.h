@@ -111,6 +111,11 @@ Push push_to(const PartTissue& tissue, const Eigen::Vector2d& p_m, double depth_
 void sample_surface(const PartTissue& tissue, const SurfaceEffect& effect, const Contact& contact, const PartWork& work,
                     SurfaceShape& shape);
 
+// Whether the load lies in the picture's plane, and does not go into it.
+bool in_plane(const PartTissue& tissue);
+// Whether there is material of the design at p_m of the tissue's plane, at any depth.
+bool is_on_part(const PartDesign& design, const Eigen::Vector2d& p_m);
+
 // Takes the next method, unless something presses. Returns its name; nullptr if it stays.
 const char* next_method(const PartTissue& tissue, PartWork& work);
 // How often buttons went on since the start; nothing without a button.

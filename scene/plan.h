@@ -24,6 +24,7 @@ struct Plan {
     std::string tissue_name;
     stiffnessmaps::SourceKind source = stiffnessmaps::SourceKind::recorded;
     std::vector<stiffnessmaps::Nodule> nodules;
+    bool nodules_known = true;      // false: a recorded map that says nothing of them; marks are then not scored
     double greatest_force_N = 1.0;  // full scale of the force bar
     double greatest_depth_m = 0.0;  // the greatest depth that the tissue is known for
     // Forces that reach a third and two thirds of greatest_depth_m on plain tissue: they part light, medium and deep

@@ -128,15 +128,10 @@ std::array<int, 2> read_view(files::JsonReader& json) {
 PartOptions read_part_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets) {
     json.only({"designs", "load", "method", "cell_mm", "gesture", "view", "both"});
     PartOptions out;
-    const files::Json& designs = json.any("designs");
-    const bool list = designs.is_array() && !designs.empty() && designs.size() <= 2;
-    if (!list) json.fail("designs", files::described(designs), "one or two part files");
-    for (const files::Json& name : designs) {
-        if (!name.is_string()) json.fail("designs", files::described(name), "names of part files");
-        if (name.get_ref<const std::string&>().find('\0') != std::string::npos)
-            json.fail("designs", files::described(name) + " with a zero byte (\\u0000)", "names without it");
-        out.designs.push_back(find_file(name.get<std::string>(), file, assets / "parts"));
-    }
+    const std::vector<std::string> designs = json.texts("designs", 1, "names of part files");
+    if (designs.size() > 2)
+        json.fail("designs", std::to_string(designs.size()) + " part files", "one or two part files");
+    for (const std::string& name : designs) out.designs.push_back(find_file(name, file, assets / "parts"));
     out.load = json.text("load", "");
     if (json.has("method")) {
         constexpr std::array kMethods{parts::Method::paper, parts::Method::euler_bernoulli, parts::Method::timoshenko,

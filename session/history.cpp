@@ -87,6 +87,7 @@ files::Json json_of(const KeptTrial& t) {
             {"clock_s", rounded(t.clock_s)},
             {"found", t.found},
             {"false_positives", t.false_positives},
+            {"scored", t.scored},
             {"coverage", {t.coverage[0], t.coverage[1], t.coverage[2]}},
             {"max_force_N", rounded(t.max_force_N)},
             {"nodules", nodules_json(t)},
@@ -149,6 +150,7 @@ KeptTrial kept_trial(const Session& session, const std::string& utc) {
     out.clock_s = clock_s(trial, trial.now_s);
     out.found = result.score.true_positives;
     out.false_positives = result.score.false_positives;
+    out.scored = result.scored;
     for (int i = 0; i < 3; ++i) out.coverage[i] = result.area.at_least[i + 1];
     out.max_force_N = trial.max_force_N;
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
@@ -202,6 +204,7 @@ KeptTrial read_kept_trial(const fs::path& file) {
     t.clock_s = json.number("clock_s", files::kNotNegative);
     t.found = json.integer("found", 0, kMost);
     t.false_positives = json.integer("false_positives", 0, kMost);
+    t.scored = json.boolean("scored", true);
     const std::vector<double> coverage = json.numbers("coverage", 3, kShare);
     std::copy(coverage.begin(), coverage.end(), t.coverage);
     t.max_force_N = json.number("max_force_N", files::kNotNegative);

@@ -50,6 +50,7 @@ struct KeptTrial {
     double clock_s = 0.0;
     int found = 0;
     int false_positives = 0;
+    bool scored = true;                    // false: the tissue did not say which nodules it has
     double coverage[3] = {0.0, 0.0, 0.0};  // share pressed light, medium, deep, or deeper
     double max_force_N = 0.0;
     std::vector<KeptNodule> nodules;

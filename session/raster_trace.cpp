@@ -30,6 +30,31 @@ std::vector<Line> lines_over(const scene::Plan& plan) {
     return lines;
 }
 
+// A part answers along its load: strokes from where it is touched to its far side, through its middle and beside it. A load
+// that goes into the picture is swept as tissue is.
+std::vector<Line> lines_on_part(const scene::PartTissue& tissue) {
+    const bool up = std::abs(tissue.direction_m[1]) >= std::abs(tissue.direction_m[0]);
+    const Eigen::Vector2d along = up ? Eigen::Vector2d::UnitY() : Eigen::Vector2d::UnitX();
+    const Eigen::Vector2d direction = std::copysign(1.0, tissue.direction_m[up ? 1 : 0]) * along;
+    const Eigen::Vector2d across = Eigen::Vector2d::Ones() - along;
+    const bool pulls = tissue.options.gesture == scene::PartGesture::pull;
+    std::vector<Line> lines;
+    for (const scene::PartDesign& design : tissue.designs) {
+        for (const double share : {0.5, 0.35, 0.65}) {
+            const Eigen::Vector2d middle_m =
+                design.origin_m + across.cwiseProduct(share * design.size_m) + along.cwiseProduct(0.5 * design.size_m);
+            const double half_m = 0.5 * along.dot(design.size_m);
+            Line line{middle_m - half_m * direction, middle_m + half_m * direction};
+            // a pull holds what is under the pen at its start; without material there the stroke pulls nothing
+            const Eigen::Vector2d step_m = design.part.voxels.frame.pitch_m * direction;
+            while (pulls && !scene::is_on_part(design, line.from_m) && (line.to_m - line.from_m).dot(direction) > 0.0)
+                line.from_m += step_m;
+            if ((line.to_m - line.from_m).dot(direction) > 0.0) lines.push_back(line);
+        }
+    }
+    return lines;
+}
+
 double rounded(double value, double step) { return std::round(value / step) * step; }
 
 class Pen {
@@ -103,7 +128,9 @@ platform::TraceInfo raster_info(const RasterOptions& options) {
 void draw_raster(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options,
                  const std::function<void(const platform::Sample&)>& take) {
     Pen pen(scene, plan, options, take);
-    const std::vector<Line> lines = lines_over(plan);
+    const auto* part = std::get_if<scene::PartTissue>(&plan.tissue);
+    const bool along = part != nullptr && scene::in_plane(*part);
+    const std::vector<Line> lines = along ? lines_on_part(*part) : lines_over(plan);
     for (std::size_t i = 0; pen.t_s() < options.seconds; ++i) pen.draw(lines[i % lines.size()]);
 }
 

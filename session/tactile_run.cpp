@@ -49,9 +49,11 @@ TactileSink::TactileSink(const tactile::TactilePlan& plan, const std::filesystem
 void TactileSink::take(const StepRecord& record, std::span<const double> reached_m) {
     const LoopCommand& command = record.command;
     const auto n = static_cast<std::size_t>(command.pins);
-    add(command, result.steps);
+    const bool rendered = record.fault == devices::Fault::none;
+    add(command, rendered, result.steps);
     const std::span<const double> estimate(command.reached_m.data(), n);
-    add({command.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, command.pressed, result.mismatch);
+    if (rendered)
+        add({command.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, command.pressed, result.mismatch);
     if (record.step_ns > 0) step.add_ns(record.step_ns);
     if (log_) log_->write(command);
 }

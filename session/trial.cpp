@@ -148,6 +148,11 @@ Debrief debrief(const scene::Plan& plan, const Trial& trial) {
     std::vector<study::MarkedPlace> places;
     for (const Mark& mark : trial.marks) places.push_back({mark.p_m.x(), mark.p_m.y()});
     out.score = study::score_marks(targets, places);
+    out.scored = plan.nodules_known;
+    if (!out.scored) {  // a mark may well be on a nodule that nobody has named
+        out.score.false_positives = 0;
+        out.score.ppv = std::nan("");
+    }
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const double near_m = 0.5 * std::max(targets[i].diameter_m, targets[i].length_m);
         out.depth_m.push_back(study::deepest_near(trial.coverage, targets[i].x_m, targets[i].y_m, near_m));
@@ -181,7 +186,7 @@ files::Json trial_json(const scene::Plan& plan, const Trial& trial) {
              {"y_mm", 1e3 * mark.p_m.y()},
              {"confidence", mark.confidence > 0 ? files::Json(mark.confidence) : files::Json(nullptr)},
              {"onset_s", mark.onset_s},
-             {"kind", kKinds[static_cast<int>(score.kind)]},
+             {"kind", result.scored ? kKinds[static_cast<int>(score.kind)] : "not scored"},
              {"distance_mm", score.target < 0 ? files::Json(nullptr) : files::Json(1e3 * score.distance_m)}});
     }
     json["nodules"] = files::Json::array();

@@ -71,6 +71,7 @@ enum class Finding : std::uint8_t { found, not_touched, too_light, not_marked };
 
 struct Debrief {
     study::Score score;
+    bool scored = true;             // false: which nodules there are is not known, so that no mark is right or wrong
     std::vector<Finding> findings;  // of each nodule of the plan
     std::vector<double> depth_m;    // of the deepest press over each nodule
     study::CoverageShares area;

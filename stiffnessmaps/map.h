@@ -59,6 +59,7 @@ struct Map {
     IndenterShape indenter = IndenterShape::sphere;
     double indenter_radius_m = 4e-3;
     std::vector<Nodule> nodules;
+    bool nodules_known = true;  // false: nobody said which there are, as of a recording; then `nodules` is empty
     MapSource source;
 
     std::size_t n_depths() const { return depths_m.size(); }

@@ -166,6 +166,7 @@ Map read_map(const fs::path& folder) {
     map.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
     map.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
     indenter.finish();
+    map.nodules_known = json.has("nodules");
     for (files::JsonReader& nodule : json.objects("nodules")) map.nodules.push_back(read_nodule(nodule));
     map.source = read_source(json.object("source"));
 
@@ -230,7 +231,7 @@ files::Json map_json(const Map& map) {
     json["tangential"] = name_of(map.tangential);
     json["indenter"] = {{"shape", name_of(map.indenter)}, {"radius_mm", mm(map.indenter_radius_m)}};
     if (map.noise_N) json["noise_N"] = *map.noise_N;
-    json["nodules"] = files::Json::array();
+    if (map.nodules_known || !map.nodules.empty()) json["nodules"] = files::Json::array();
     for (const Nodule& nodule : map.nodules) {
         files::Json entry{{"id", nodule.id},
                           {"origin", nodule.placed ? "placed" : "detected"},

@@ -95,6 +95,28 @@ Replication replicate(const Proportion& a, const Proportion& b, double z) {
     return out;
 }
 
+bool anybody_in_both(const People& a, const People& b) {
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (a[i] && b[i]) return true;
+    }
+    return false;
+}
+
+// The people who took part in the other condition too.
+People of_both(const People& people, const People& other) {
+    People out = people;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        if (!other[i]) out[i].reset();
+    }
+    return out;
+}
+
+// The interval is of the people whose difference stands beside it.
+Interval bootstrap_of(const People& a, const People& b, const BootstrapOptions& options) {
+    return anybody_in_both(a, b) ? bootstrap_difference(of_both(a, b), of_both(b, a), options)
+                                 : bootstrap_difference(a, b, options);
+}
+
 void take_people(const People& a, const People& b, Quantity quantity, bool resample, const BootstrapOptions& options,
                  PairResult& pair) {
     if (a.empty() || b.empty()) {
@@ -103,7 +125,7 @@ void take_people(const People& a, const People& b, Quantity quantity, bool resam
     }
     pair.people = compare_people(a, b, average_of(quantity), people_options(options, resample));
     if (resample) {
-        const Interval ci = bootstrap_difference(a, b, options);
+        const Interval ci = bootstrap_of(a, b, options);
         if (!std::isnan(ci.low)) pair.bootstrap = ci;
     }
     for (std::size_t i = 0; i < a.size(); ++i) pair.participants_in_both += a[i] && b[i] ? 1 : 0;
@@ -136,13 +158,6 @@ People of_group(const Observations& seen, const People& people, int group) {
 
 bool anybody(const People& people) {
     return std::any_of(people.begin(), people.end(), [](const auto& one) { return one.has_value(); });
-}
-
-bool anybody_in_both(const People& a, const People& b) {
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        if (a[i] && b[i]) return true;
-    }
-    return false;
 }
 
 // By condition and group; empty where nobody of the group took part.
@@ -238,9 +253,10 @@ std::vector<PairResult> compare_conditions(const Observations& seen, Quantity qu
         PairResult pair;
         pair.a = seen.conditions[a];
         pair.b = seen.conditions[b];
-        const double difference = shares[a].p() - shares[b].p();
-        if (difference != 0.0) pair.higher = difference > 0.0 ? pair.a : pair.b;
         take_people(people[a], people[b], quantity, resample, options, pair);
+        const double of_people = pair.people.difference;
+        const double difference = std::isnan(of_people) ? shares[a].p() - shares[b].p() : of_people;
+        if (std::abs(difference) > 1e-12) pair.higher = difference > 0.0 ? pair.a : pair.b;
         if (quantity != Quantity::correct) pair.replication = replicate(shares[a], shares[b], z);
         if (!judgements.empty()) pair.paired = paired_counts(judgements[a], judgements[b]);
         if (pair.paired) {

@@ -27,7 +27,8 @@ struct Replication {
 struct PairResult {
     std::string a;  // of the two, the one that the protocol names first
     std::string b;
-    std::string higher;  // by the pooled shares: a, b or "" if equal
+    std::string
+        higher;  // a, b or "" if equal: by the difference of people, or by the pooled shares where that is not known
     PeopleTest people;
     double p_holm = 1.0;                // of people.p, over the pairs of the table that can be tested
     double p_permutation_holm = 1.0;    // of people.p_permutation

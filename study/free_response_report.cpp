@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "files/text.h"
 #include "study/comparisons.h"
@@ -228,6 +229,32 @@ ReportTable froc_table(const FreeResponseReport& found) {
     return table;
 }
 
+// The cases for the tests: without the conditions under which nobody met a lesion, since they have no figure of merit, and
+// the others could not be tested beside them. Those conditions are noted.
+std::vector<JudgedCase> cases_to_test(const Observations& seen, std::vector<std::string>& notes) {
+    std::vector<bool> judged(seen.conditions.size(), false), lesions = judged;
+    for (const JudgedCase& one : seen.judged) {
+        const auto i = static_cast<std::size_t>(one.condition);
+        judged[i] = true;
+        if (!one.lesions.empty()) lesions[i] = true;
+    }
+    if (std::find(lesions.begin(), lesions.end(), true) == lesions.end()) return seen.judged;
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+        if (judged[i] && !lesions[i])
+            notes.push_back("No case under " + seen.conditions[i] +
+                            " has a lesion: the tests of free-response figures leave this condition out");
+    }
+    std::vector<JudgedCase> out;
+    std::copy_if(seen.judged.begin(), seen.judged.end(), std::back_inserter(out),
+                 [&](const JudgedCase& one) { return lesions[static_cast<std::size_t>(one.condition)]; });
+    return out;
+}
+
+bool has_cases_without_lesions(const FreeResponse& data) {
+    return std::any_of(data.cases.begin(), data.cases.end(),
+                       [](const FreeResponseCase& one) { return one.lesions.empty(); });
+}
+
 }  // namespace
 
 FreeResponseReport free_response_report(const Observations& seen, double level) {
@@ -235,7 +262,6 @@ FreeResponseReport free_response_report(const Observations& seen, double level) 
     if (seen.judged.empty()) return out;
     if (!all_rated(seen, out)) return out;
     const FreeResponse data = free_response_of(seen.judged, seen.conditions, seen.participants);
-    out.conditions = data.conditions;
     for (const FreeResponseCase& one : data.cases) ++(one.lesions.empty() ? out.cases_without : out.cases_with);
     for (std::size_t i = 0; i < data.conditions.size(); ++i) {
         for (std::size_t j = 0; j < data.participants.size(); ++j) {
@@ -245,11 +271,13 @@ FreeResponseReport free_response_report(const Observations& seen, double level) 
             {data.conditions[i], froc_curve(data, i, std::nullopt), llf_at(data, i, std::nullopt, kHalf)});
     }
     note_missing_cases(out);
-    const std::vector<std::size_t> people = complete_people(data, out.notes);
+    const FreeResponse tested = free_response_of(cases_to_test(seen, out.notes), seen.conditions, seen.participants);
+    out.conditions = tested.conditions;
+    const std::vector<std::size_t> people = complete_people(tested, out.notes);
     out.participants_tested = static_cast<int>(people.size());
     for (const Merit merit : kMerits) {
-        const bool possible = out.cases_with > 0 && (out.cases_without > 0 || merit == Merit::wafroc1);
-        if (possible) out.tests.push_back(test_of(data, people, merit, level));
+        const bool possible = out.cases_with > 0 && (has_cases_without_lesions(tested) || merit == Merit::wafroc1);
+        if (possible) out.tests.push_back(test_of(tested, people, merit, level));
     }
     return out;
 }

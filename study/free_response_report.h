@@ -34,7 +34,7 @@ struct FrocCurve {
 };
 
 struct FreeResponseReport {
-    std::vector<std::string> conditions;
+    std::vector<std::string> conditions;  // that are tested
     std::vector<PersonMerits> figures;
     std::vector<FrocCurve> curves;
     std::vector<MeritResult> tests;

@@ -47,6 +47,16 @@ bool begins_with(const std::string& text, const std::string& other) {
     return text.compare(0, other.size(), other) == 0;
 }
 
+constexpr std::string_view kWithdrawalRow = "\nn/a\twithdrawal\t";
+
+bool tells_withdrawal(const std::string& answers) { return answers.find(kWithdrawalRow) != std::string::npos; }
+
+std::string without_withdrawal(std::string answers) {
+    for (auto at = answers.find(kWithdrawalRow); at != std::string::npos; at = answers.find(kWithdrawalRow))
+        answers.erase(at + 1, answers.find('\n', at + 1) - at);  // with its end, or to the text's end
+    return answers;
+}
+
 bool same_study(const StudyIdentity& a, const StudyIdentity& b) {
     return a.name == b.name && a.version == b.version && a.sha256 == b.sha256 && a.kind.simulated == b.kind.simulated &&
            a.kind.seed == b.kind.seed;
@@ -125,11 +135,14 @@ class Plan {
             const fs::path path = directory_ / name;
             most.there = is_taken(name, most.from);
             const std::string there = most.there ? files::read_text(path) : "";
-            if (!begins_with(most.text, there) && !begins_with(there, most.text)) {
+            // a withdrawal that was noted here the tablet does not know of
+            const std::string sent = tells_withdrawal(most.text) ? there : without_withdrawal(there);
+            if (!begins_with(most.text, sent) && !begins_with(sent, most.text)) {
                 throw files::bad_input(most.from, name, "other answers than in " + path.string(),
                                        "the same ones, or more of them: nothing is overwritten");
             }
-            const bool more = !most.there || most.text.size() > there.size();
+            const bool more = !most.there || most.text.size() > sent.size();
+            if (more && most.there) most.text = there + most.text.substr(sent.size());
             if (!more) report.already_there.push_back(name);
             it = more ? std::next(it) : answers.erase(it);
         }

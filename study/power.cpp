@@ -124,7 +124,9 @@ bool is_log_odds(const Finding& finding) { return finding.quantity == "log odds"
 // The true value of what a row estimates, and its error.
 void set_truth(const Finding& what, double effect, const EstimateMean& of_most, PowerResult& result) {
     const bool difference = !what.b.empty();
-    if (is_log_odds(what)) {
+    if (what.label == kSameGroups) {
+        result.truth = 0.0;
+    } else if (is_log_odds(what)) {
         result.truth = effect == 0.0 && difference ? 0.0 : kUnknown;
     } else if (effect == 0.0 && difference) {
         result.truth = 0.0;
@@ -143,7 +145,8 @@ std::vector<Finding> findings_of(const Report& report) {
     if (report.primary) {
         const PrimaryResult& primary = *report.primary;
         out.push_back({name_of(primary.stated.quantity), primary.stated.sides[0], primary.stated.sides[1], "primary",
-                       "", primary.p, primary.people.difference, primary.people.ci});
+                       primary.stated.of_groups ? kSameGroups : "", primary.p, primary.people.difference,
+                       primary.people.ci});
     }
     add_pairs_found(report.pairs, "sensitivity", out);
     add_pairs_found(report.ppv_pairs, "ppv", out);
@@ -151,7 +154,7 @@ std::vector<Finding> findings_of(const Report& report) {
     for (const GroupResult& group : report.group_comparisons) {
         const std::string under = group.condition + (group.condition_b.empty() ? "" : " - " + group.condition_b);
         out.push_back({name_of(group.quantity), group.group_a + ", " + under, group.group_b + ", " + under, "groups",
-                       "", group.people.p, group.people.difference, group.people.ci});
+                       kSameGroups, group.people.p, group.people.difference, group.people.ci});
     }
     for (const ConditionResult& one : report.conditions) {
         add_share_found("sensitivity", one.name, one.se, out);

@@ -14,11 +14,15 @@
 namespace palpa::study {
 
 // One test, one interval, or both, of one report. What the report does not have is NaN.
+// The people of all groups are simulated alike, so that a comparison of groups tells the type I error at every effect.
+inline constexpr const char* kSameGroups = "type I error: simulated groups do not differ";
+
 struct Finding {
     std::string quantity;  // sensitivity, ppv, correct, a figure of merit, or log odds
     std::string a, b;      // conditions or groups; b empty: of a alone
     std::string method;    // t, permutation, bootstrap, Wilson, ...
-    std::string label;     // replication or ignores clustering, as in the report; empty for what should keep its level
+    // replication or ignores clustering, as in the report; kSameGroups; empty for what should keep its level and has power
+    std::string label;
     double p = std::numeric_limits<double>::quiet_NaN();
     double estimate = std::numeric_limits<double>::quiet_NaN();  // of what `ci` is an interval of
     Interval ci{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};

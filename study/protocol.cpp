@@ -111,11 +111,7 @@ Item read_item(files::JsonReader json, std::set<std::string>& known) {
     }
     if (json.has("choices")) {
         if (item.from) json.fail("choices", "a scale too", "either choices or from and to");
-        const files::Json& list = json.any("choices");
-        if (!list.is_array() || list.size() < 2) json.fail("choices", files::described(list), "two texts or more");
-        for (const files::Json& entry : list) {
-            if (!entry.is_string()) json.fail("choices", files::described(entry), "a text");
-            const auto text = entry.get<std::string>();
+        for (const std::string& text : json.texts("choices", 2, "texts")) {
             if (std::find(item.choices.begin(), item.choices.end(), text) != item.choices.end())
                 json.fail("choices", "'" + text + "' a second time", "each text once");
             item.choices.push_back(text);
@@ -234,15 +230,10 @@ void read_analysis(files::JsonReader json, Protocol& protocol) {
     json.finish();
 }
 
-std::vector<std::string> read_texts(files::JsonReader& json, std::string_view key) {
-    std::vector<std::string> texts;
-    if (!json.has(key)) return texts;
-    const files::Json& list = json.any(key);
-    if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of texts");
-    for (const files::Json& one : list) {
-        if (!one.is_string() || one.get<std::string>().empty()) json.fail(key, files::described(one), "a text");
-        texts.push_back(one.get<std::string>());
-    }
+std::vector<std::string> read_texts(files::JsonReader& json, const char* key) {
+    if (!json.has(key)) return {};
+    const std::vector<std::string> texts = json.texts(key, 1, "texts");
+    if (std::find(texts.begin(), texts.end(), "") != texts.end()) json.fail(key, "an empty text", "an array of texts");
     return texts;
 }
 

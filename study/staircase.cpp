@@ -103,7 +103,7 @@ void estimate_threshold(const StaircaseTask& task, const std::vector<StaircaseAn
         reversals += answers[i].correct != answers[i - 1].correct ? 1 : 0;
         if (reversals < kFirstReversals) continue;
         ++n;
-        sum += std::abs(difference_at(task, answers[i].level));
+        sum += difference_at(task, answers[i].level);
         at_ends += answers[i].level == (answers[i].correct ? 0 : last) ? 1 : 0;
     }
     if (out.reversals >= 2 * kFirstReversals) out.threshold = sum / n;

@@ -54,7 +54,7 @@ std::vector<PosteriorPoint> posterior_of(const StaircaseTask& task, const std::v
 // Returns P(answer is right) at this point for a pair whose difference is `difference` = ln(comparison / reference).
 double share_right(const PosteriorPoint& point, double difference, bool reference_first);
 
-// What the answers tell. Differences are |ln(comparison / reference)|.
+// What the answers tell. Differences are ln(comparison / reference): below 0 where the comparison is the softer one.
 struct StaircaseEstimate {
     int trials = 0;
     int reversals = 0;             // changes from right to wrong answers or back
@@ -63,7 +63,7 @@ struct StaircaseEstimate {
     // level sought if a step is not small against sd, since the psychometric function is curved between the levels.
     std::optional<double> threshold;
     // Mean of ln(sd) in the posterior, times 0.6745, and its 95 % credible interval: the difference of which 75 % are
-    // felt by a person without bias and lapses.
+    // felt by a person without bias and lapses, on the stiffer side.
     double jnd = 0.0;
     double jnd_low = 0.0;
     double jnd_high = 0.0;

@@ -30,7 +30,8 @@ files::Json staircase_json(const StaircaseResult& result) {
 
 ReportTable staircase_table(const Report& report) {
     ReportTable table{"staircases",
-                      "Staircases: the difference that a participant feels, in per cent of the reference",
+                      "Staircases: the difference that a participant feels, in per cent of the reference, with 95 % "
+                      "credible intervals",
                       {"condition", "participant", "method", "trials", "reversals", "target", "threshold_percent",
                        "jnd_percent", "jnd_low", "jnd_high", "status"},
                       {}};

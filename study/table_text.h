@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/statistics.h"
@@ -18,7 +19,8 @@ inline std::string fixed(double value, int digits) {
     if (!std::isfinite(value)) return kNone;
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
+    const bool zero = std::string_view(text).find_first_of("123456789") == std::string_view::npos;
+    return zero && text[0] == '-' ? text + 1 : text;  // no -0.0000
 }
 
 inline std::string share_text(double value) { return fixed(value, 4); }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "files/text.h"
 #include "platform/real_time.h"
 
 namespace palpa::tactile {
@@ -123,7 +124,7 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     ArmFeedback feedback;
     const double began_s = await_sensor(options.arm, rig, feedback);
     out.has_sensor = feedback.has_sensor == 1.0;
-    double last_s = began_s, told_s = began_s, sent_N = 0.0;
+    double last_s = began_s, told_s = began_s, heard_s = began_s, longest_silence_s = 0.0, sent_N = 0.0;
     devices::TimeHistogram delays;
     FrictionDirection direction;
     while (last_s - began_s < options.seconds) {
@@ -133,6 +134,8 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
         last_s = now_s;
         const bool fresh = rig.read(feedback);
         if (fresh) delays.add(feedback.age_s + feedback.round_trip_s);
+        if (fresh) heard_s = now_s;
+        longest_silence_s = std::max(longest_silence_s, now_s - heard_s);
         devices::begin_tick(options.limits, now_s, fresh, &feedback, out.guard);
         ArmCommand command = wanted(options, feedback, direction);
         devices::guard_arm(options.limits, command, out.guard);
@@ -149,6 +152,10 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     out.delay_s = delays.quantile_s(0.5);
     if (devices::latches(out.guard.fault))
         throw std::runtime_error("arm: stopped: " + std::string(devices::text(out.guard.fault)));
+    constexpr double kSilent_s = 0.5;  // what is left of the strokes tells no stiffness
+    if (longest_silence_s > kSilent_s)
+        throw std::runtime_error("arm: nothing came from it for " + files::short_number(longest_silence_s) +
+                                 " s in the middle of the strokes");
     return out;
 }
 

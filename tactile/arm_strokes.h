@@ -51,8 +51,8 @@ struct Strokes {
     double delay_s = 0.0;         // median, from what the arm says to the command that follows from it, there and back
 };
 
-// Waits up to 2 s for the sensor's zero, then strokes. Throws std::runtime_error if nothing answers, or if a fault
-// stopped the arm for good.
+// Waits up to 2 s for the sensor's zero, then strokes. Throws std::runtime_error if nothing answers, if a fault
+// stopped the arm for good, or if it was silent for half a second.
 Strokes run_strokes(const StrokeOptions& options, ArmRig& rig);
 
 // Paths for a hand, as rows of a PRESS. Slow strokes over the whole range for a fit: at five speeds, the slower ones over

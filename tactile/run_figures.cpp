@@ -40,8 +40,10 @@ files::Json warnings_json(const TactilePlan& plan, const DeviceFigures& devices)
 
 }  // namespace
 
-void add(const LoopCommand& step, StepFigures& figures) {
+void add(const LoopCommand& step, bool rendered, StepFigures& figures) {
     ++figures.steps;
+    figures.relaxed_steps += !rendered;
+    if (!rendered) return;
     figures.held_steps += step.held;
     figures.inexact_steps += step.inexact;
     figures.over_edge_steps += step.over_edge;
@@ -71,6 +73,7 @@ files::Json figures_json(const TactilePlan& plan, const StepFigures& steps, cons
     json["steps"] = steps.steps;
     json["late_steps"] = devices.late_steps;
     json["held_steps"] = steps.held_steps;
+    json["relaxed_steps"] = steps.relaxed_steps;
     json["max_force_N"] = steps.max_force_N;
     json["max_depth_mm"] = 1e3 * steps.max_depth_m;
     json["reached_by"] = plan.pins ? devices.reached_by : "nothing";

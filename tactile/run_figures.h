@@ -18,6 +18,7 @@ struct StepFigures {
     std::int64_t steps = 0;
     std::int64_t pressed_steps = 0;
     std::int64_t held_steps = 0;
+    std::int64_t relaxed_steps = 0;  // at which a fault kept all at rest: they count in no figure of what was rendered
     std::int64_t inexact_steps = 0;
     std::int64_t over_edge_steps = 0;
     double max_force_N = 0.0;
@@ -26,7 +27,8 @@ struct StepFigures {
     double clipped_share = 0.0;  // of the pins, summed over the pressed steps
     double least_scale = 1.0;
 };
-void add(const LoopCommand& step, StepFigures& figures);
+// `rendered`: false while a fault keeps all at rest.
+void add(const LoopCommand& step, bool rendered, StepFigures& figures);
 
 // Depends on devices and the wall clock. Times that nobody measured are NaN, and null in JSON.
 struct DeviceFigures {
@@ -41,7 +43,7 @@ struct DeviceFigures {
     const char* reached_by = "nothing";  // estimate, or simulator: the simulated pins' true heights
 };
 
-// Keys: pairing, schedule, leads, steps, late_steps, held_steps, max_force_N, mismatch_mm {rms, max}, mismatch_ms,
+// Keys: pairing, schedule, leads, steps, late_steps, held_steps, relaxed_steps, max_force_N, mismatch_mm {rms, max}, mismatch_ms,
 // clipped_share, linear_range, step_us {p50, p99}, link {round_trip_ms {p50, p99}, lost}, faults [{fault, times}],
 // warnings and more (docs/tactile.md). Parts that the scene does not have are null.
 files::Json figures_json(const TactilePlan& plan, const StepFigures& steps, const MismatchMeter& mismatch,

@@ -172,14 +172,10 @@ int actuator_named(JsonReader& json, std::string_view key, const std::string& na
 SoftTie read_tie(JsonReader& json, const SoftDevice& device) {
     json.only({"actuators", "force", "motion"});
     SoftTie tie;
-    const files::Json& names = json.any("actuators");
-    if (!names.is_array() || names.size() < 2)
-        json.fail("actuators", files::described(names), "an array of two names or more");
     double lower = 0.0;
     double upper = 1e300;
-    for (const files::Json& name : names) {
-        if (!name.is_string()) json.fail("actuators", files::described(name), "names of actuators");
-        tie.actuators.push_back(actuator_named(json, "actuators", name.get<std::string>(), device));
+    for (const std::string& name : json.texts("actuators", 2, "names of actuators")) {
+        tie.actuators.push_back(actuator_named(json, "actuators", name, device));
         const SoftActuator& other = device.actuators[position(tie.actuators.back())];
         const SoftActuator& first = device.actuators[position(tie.actuators.front())];
         if (std::count(tie.actuators.begin(), tie.actuators.end(), tie.actuators.back()) > 1)

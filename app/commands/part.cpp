@@ -38,7 +38,7 @@ files::Json json_of(const parts::Part& part, const parts::PartInfo& info) {
 }
 
 void print_info(const PartOptions& options) {
-    const parts::Part part = parts::read_part(options.file);
+    const parts::Part part = read_part_aloud(options.file);
     const parts::PartInfo info = parts::info_of(part);
     if (options.json) {
         std::printf("%s", files::json_text(json_of(part, info)).c_str());
@@ -59,6 +59,13 @@ void print_info(const PartOptions& options) {
 }
 
 }  // namespace
+
+parts::Part read_part_aloud(const std::string& file) {
+    parts::Part part = parts::read_part(file);
+    for (const std::string& warning : part.warnings)
+        std::fprintf(stderr, "palpa: warning: %s\n", files::printable(warning).c_str());
+    return part;
+}
 
 void add_part(CLI::App& app) {
     CLI::App* part = app.add_subcommand("part", "Multi-material parts: what they are made of, how stiff they are");

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+
+#include "parts/part_file.h"
+
 namespace CLI {
 class App;
 }
@@ -8,6 +12,9 @@ namespace palpa::app {
 
 // Adds `palpa part`, as the functions of command_line.h add theirs.
 void add_part(CLI::App& app);
+
+// Reads a part (parts/part_file.h) and prints its warnings.
+parts::Part read_part_aloud(const std::string& file);
 
 // Add commands of `palpa part` to it.
 void add_part_evaluate(CLI::App& part);

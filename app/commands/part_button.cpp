@@ -68,7 +68,7 @@ void print_table(const parts::Part& part, const mechanics::ButtonCurve& curve) {
 
 void run_button(const ButtonOptions& options) {
     if (!options.out.empty()) files::check_output(options.out, {options.file});
-    const parts::Part part = parts::read_part(options.file);
+    const parts::Part part = read_part_aloud(options.file);
     const mechanics::ButtonCurve curve = parts::button_curve(part);
     const std::string text = files::json_text(json_of(part, curve));
     if (!options.out.empty()) files::write_text_atomically(options.out, text);

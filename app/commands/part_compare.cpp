@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "app/commands/option_checks.h"
+#include "app/commands/part.h"
 #include "app/commands/part_design.h"
 #include "figures/gnuplot.h"
 #include "figures/part_figure.h"
@@ -91,7 +92,7 @@ void compare(const CompareOptions& options) {
         figures::check_figure(options.figure);
         files::check_output(options.figure, {options.a, options.b});
     }
-    const parts::Part a = parts::read_part(options.a), b = parts::read_part(options.b);
+    const parts::Part a = read_part_aloud(options.a), b = read_part_aloud(options.b);
     parts::StiffnessOptions how{{method_named(options.method)}, {}, options.tolerance};
     if (options.cell_mm > 0.0) how.cell_m = 1e-3 * options.cell_mm;
     const parts::PartComparison comparison = parts::compare_parts(a, b, options.load, how);

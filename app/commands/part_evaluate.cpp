@@ -89,7 +89,7 @@ void print_row(const parts::MethodResult& result) {
 
 void print_stiffness(const EvaluateOptions& options) {
     if (!options.out.empty()) files::check_output(options.out, {options.file});
-    const parts::Part part = parts::read_part(options.file);
+    const parts::Part part = read_part_aloud(options.file);
     const parts::PartLoad& load = load_named(part, options.load);
     parts::StiffnessOptions how{methods_of(options.methods), {}, options.tolerance};
     if (options.cell_mm > 0.0) how.cell_m = 1e-3 * options.cell_mm;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands/option_checks.h"
+#include "app/commands/part.h"
 #include "app/commands/part_design.h"
 #include "files/input_error.h"
 #include "files/printable.h"
@@ -90,7 +91,7 @@ void export_part(const ExportOptions& options) {
     } else {
         files::check_output(options.output, {options.file});
     }
-    const parts::Part part = parts::read_part(options.file);
+    const parts::Part part = read_part_aloud(options.file);
     const std::vector<parts::ExportedFile> written = write_files(part, options, kind);
     if (options.json) {
         files::Json json{{"part", part.file}, {"files", files::Json::array()}};

@@ -23,7 +23,7 @@ struct PowerArguments {
 
 // Of the primary comparison's sides, or of all conditions without one; no test that ignores clustering.
 bool is_shown(const study::PowerResult& one, const study::Protocol& protocol) {
-    if (!one.what.label.empty()) return false;
+    if (!one.what.label.empty() && one.what.method != "primary") return false;
     if (!protocol.primary || protocol.primary->of_groups) return true;
     const auto& sides = protocol.primary->sides;
     const auto among = [&](const std::string& name) {
@@ -181,7 +181,9 @@ void add_study_power(CLI::App& study) {
         ->delimiter(',')
         ->check(CLI::Range(0.0, 1.0));
     command->add_option("--reference", options.reference,
-                        "condition whose scene the other tests show (default: the first of the primary comparison)");
+                        "condition whose scene the other tests show (default: the first of a primary comparison of "
+                        "conditions, else the "
+                        "protocol's first)");
     command->add_option("--noise", options.noises, "factors on the noise of the simulated eye (default 1)")
         ->delimiter(',')
         ->check(CLI::Range(0.05, 20.0));

@@ -215,8 +215,13 @@ void calibrate_pins(const PinsOptions& options) {
             const Holder holder(device, wanted_m, line);
             heights_m = typed_heights(device.pins.size(), share);
         }
+        if (line.gone) throw std::runtime_error(device.port + ": the port is gone");
         measured.height_m.push_back(std::move(heights_m));
     }
+    // heights of boards that no longer listen are those of no pulse
+    devices::prove_boards(device, line, boards);
+    if (devices::state_of(device, line, boards) != devices::PinState::driving)
+        throw std::runtime_error(options.device + ": its boards stopped answering while heights were measured");
     const devices::PinCalibration found = devices::calibrate(device, measured);
     PinDevice calibrated = found.device;
     calibrated.port = devices::read_pin_device(options.device).port;

@@ -124,6 +124,26 @@ files::Json devices_json(const tangible::TangiblePlan& plan, bool real, const st
     return devices;
 }
 
+// Nobody can stop this run but the guard: the fault "stopped" is the guard's doing, and is named once, by its cause.
+void name_guard(const std::string& why, files::Json& json) {
+    files::Json faults = files::Json::array();
+    for (const files::Json& fault : json["faults"]) {
+        if (fault["fault"] != text_of(tangible::TickFault::stopped)) faults.push_back(fault);
+    }
+    faults.push_back({{"fault", "the guard: " + why}, {"times", 1}});
+    json["faults"] = faults;
+    std::fprintf(stderr, "palpa: warning: the guard relaxed the device (%s); nothing was rendered after that\n",
+                 why.c_str());
+}
+
+void note_less_depth(const session::Finger& finger, files::Json& json) {
+    const double usual_m = tangible::PressMotion{}.depth_m;
+    if (finger.motion.depth_m >= usual_m) return;
+    json["notes"].push_back("the built-in motion presses " + files::short_number(1e3 * finger.motion.depth_m) +
+                            " mm and not " + files::short_number(1e3 * usual_m) +
+                            " mm: three quarters of the depth that the tissue is known for");
+}
+
 void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Scene scene = load_scene(arguments.scene);
     if (!scene.tangible) throw files::bad_input(arguments.scene, "tangible", "no such key", "one that names a device");
@@ -141,12 +161,9 @@ void run_tangible(const TangibleRunArguments& arguments) {
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
+    if (!plant_name.empty() && arguments.press.empty()) note_less_depth(finger_of(arguments, {}, *plan), json);
     json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
-    if (result.guard != devices::Fault::none)
-        json["faults"].push_back({{"fault", "the guard: " + std::string(text(result.guard))}, {"times", 1}});
-    if (result.guard != devices::Fault::none)
-        std::fprintf(stderr, "palpa: warning: the guard relaxed the device (%s); nothing was rendered after that\n",
-                     std::string(text(result.guard)).c_str());
+    if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())
         files::write_text_atomically(fs::path(arguments.log) / "performance.json", files::json_text(json));

@@ -148,8 +148,8 @@ void begin(platform::Window& window, const Gui& gui, App& app);
 // Ends the present trial and begins a new one, or leaves it waiting for a keeper that is busy.
 void begin_anew(platform::Window& window, const Gui& gui, App& app);
 void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // begins what begin_anew() left waiting
-// Changes to another scene or profile. If it cannot be prepared, the present one stays.
-void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
+// Changes to another scene or profile. Returns false if it cannot be prepared: the present one stays.
+bool change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
 // Begins the guided start: a practice trial on the default scene.
 void begin_guided(platform::Window& window, Gui& gui, App& app);
 // Ends it. What was begun goes on as a practice trial; after its result, a new one begins.

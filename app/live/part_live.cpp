@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 #include "app/assets.h"
 #include "app/live/live_app.h"
@@ -23,10 +24,27 @@ bool is_edited(const fs::path& design) {
     return design.parent_path() == edits_folder() && design.stem().string().find("-edited") != std::string::npos;
 }
 
-// A copy whose edits were all undone is as its design. One that cannot be read is told of when it is opened.
+// Names beside the part's own file stay what they were in a copy elsewhere.
+void keep_names(const fs::path& from, files::Json& part) {
+    const auto keep = [&](files::Json& name) {
+        if (name.is_string() && fs::path(name.get<std::string>()).is_relative())
+            name = fs::absolute(from.parent_path() / name.get<std::string>()).lexically_normal().string();
+    };
+    if (part.contains("button") && part["button"].contains("support") && part["button"]["support"].contains("curve"))
+        keep(part["button"]["support"]["curve"]);
+}
+
+// Whether a copy is of this design as it is now, and has more operations: a part elsewhere may have a file of the same name,
+// and a copy whose edits were all undone is as its design. One that cannot be read is told of when it is opened.
 bool holds_edits(const fs::path& copy, const fs::path& design) {
     try {
-        return files::read_json(copy).at("shape").size() > files::read_json(design).at("shape").size();
+        files::Json edited = files::read_json(copy);
+        files::Json own = files::read_json(design);
+        keep_names(design, own);
+        own = parts::moved_part(std::move(own), design, copy);
+        const files::Json shape = std::exchange(edited.at("shape"), nullptr);
+        const files::Json begin = std::exchange(own.at("shape"), nullptr);
+        return edited == own && shape.size() > begin.size() && std::equal(begin.begin(), begin.end(), shape.begin());
     } catch (const std::exception&) {
         return true;
     }
@@ -98,16 +116,6 @@ files::Json operation_of(const PartWish& wish, const std::array<int, 2>& view, c
     return {{"remove", region}};
 }
 
-// Names beside the part's own file stay what they were in a copy elsewhere.
-void keep_names(const fs::path& from, files::Json& part) {
-    const auto keep = [&](files::Json& name) {
-        if (name.is_string() && fs::path(name.get<std::string>()).is_relative())
-            name = fs::absolute(from.parent_path() / name.get<std::string>()).lexically_normal().string();
-    };
-    if (part.contains("button") && part["button"].contains("support") && part["button"]["support"].contains("curve"))
-        keep(part["button"]["support"]["curve"]);
-}
-
 // Then nothing is left to compute: their curves answer, whatever the method.
 bool buttons_only(const scene::Plan& plan) {
     const auto& designs = scene::parts_of(plan.tissue)->designs;
@@ -169,6 +177,12 @@ bool append_edit(std::size_t index, const OperationFor& operation_for, platform:
 
 void edit_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
     const std::array<int, 2> view = scene::part_options(app.session.scene.tissue)->view;
+    const auto& materials = scene::parts_of(app.session.plan->tissue)->designs.at(wish.design).part.materials;
+    const auto is_wanted = [&](const parts::PartMaterial& material) { return material.name == wish.material; };
+    if (wish.tool == PartTool::permute && std::none_of(materials.begin(), materials.end(), is_wanted)) {
+        app.notices.note = words::filled(words::kNoSuchMaterial, {wish.material});
+        return;
+    }
     const bool changed = append_edit(
         wish.design, [&](const files::Json& part) { return operation_of(wish, view, part); }, window, gui, app);
     if (changed) app.parts.undone.clear();

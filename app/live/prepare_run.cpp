@@ -6,9 +6,39 @@
 
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "app/screens/words.h"
+#include "calibration/profile_file.h"
 #include "session/replay.h"
 
 namespace palpa::app {
+
+namespace {
+
+// A chosen profile that is gone, or cannot be read any more, is told of: another one answers in its place.
+void take_chosen_profile(App& app, scene::Scene& scene) {
+    std::string& profile = app.settings.profile;
+    if (profile.empty()) return;
+    const bool there = std::filesystem::exists(profile);
+    if (!there) app.notices.problems.push_back(words::filled(words::kProfileGone, {profile}));
+    if (there && attempt(app, [&] { calibration::read_profile(profile); })) {
+        scene.profile = profile;
+        return;
+    }
+    profile.clear();
+}
+
+// Whoever chose a scene that can no longer be prepared must get to the menu to choose another: the default one opens.
+std::shared_ptr<const scene::Plan> prepare_own_choice(scene::Scene& scene, App& app) {
+    std::shared_ptr<const scene::Plan> plan;
+    const auto work = [&] { plan = std::make_shared<const scene::Plan>(scene::make_plan(scene)); };
+    if (attempt(app, work)) return plan;
+    scene = load_scene("");
+    draw_turn(scene);
+    work();
+    return plan;
+}
+
+}  // namespace
 
 void load(const RunOptions& options, App& app) {
     app.options = options;
@@ -38,7 +68,7 @@ void load(const RunOptions& options, App& app) {
     scene::Scene scene;
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
-    if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
+    if (own_choice) take_chosen_profile(app, scene);
     if (app.trace) {
         session::turn_as_recorded(app.trace->info, scene);
         const std::string other = session::other_parts(app.trace->info, scene);
@@ -50,7 +80,8 @@ void load(const RunOptions& options, App& app) {
         app.unprepared = std::move(scene);
         return;
     }
-    auto plan = std::make_shared<const scene::Plan>(scene::make_plan(scene));
+    auto plan =
+        own_choice ? prepare_own_choice(scene, app) : std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 

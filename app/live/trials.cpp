@@ -183,7 +183,7 @@ std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, c
     return std::make_shared<const scene::Plan>(work.take());
 }
 
-void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
+bool change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
     end_presses(window, app);  // samples that arrive while the tissue is prepared reach none
     rest_devices(app);
     scene::Scene scene;
@@ -194,17 +194,16 @@ void change_scene(platform::Window& window, Gui& gui, const std::string& file, c
         draw_turn(scene);
         plan = prepare(window, gui, scene);
     });
-    if (!good || !plan) return;
+    if (!good || !plan) return false;
     forget_parts(app);
     put_scene(std::move(scene), std::move(plan), window, app);
     begin_anew(window, gui, app);
+    return true;
 }
 
 void begin_guided(platform::Window& window, Gui& gui, App& app) {
     app.guided = true;
-    const std::size_t problems = app.notices.problems.size();
-    change_scene(window, gui, "", app.settings.profile, app);
-    if (app.notices.problems.size() > problems) app.guided = false;  // it goes on with what there is
+    if (!change_scene(window, gui, "", app.settings.profile, app)) app.guided = false;  // it goes on with what there is
 }
 
 void leave_guided(platform::Window& window, const Gui& gui, App& app) {

@@ -77,15 +77,21 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     if (bool* menu = menu_of(app.doing); menu != nullptr && wishes.menu) *menu = *wishes.menu;
     if (wishes.part && palpates(app.doing)) change_part(*wishes.part, window, gui, app);
     if (wishes.screen) open_screen(*wishes.screen, window, app);
-    if (app.guided && (wishes.again || wishes.next || wishes.scene || wishes.profile || wishes.mode)) {
+    const bool another_way = wishes.again || wishes.next || wishes.scene || wishes.profile || wishes.mode;
+    const bool quits_at_its_end = wishes.quit && app.session.trial.finished;
+    if (app.guided && (another_way || quits_at_its_end)) {
         app.guided = false;  // whoever goes on by another way need not begin with it again
         app.settings.guided_done = true;
         keep_settings(app);
     }
-    if (wishes.scene) app.settings.scene = *wishes.scene;
-    if (wishes.profile) app.settings.profile = *wishes.profile;
     if (wishes.scene || wishes.profile) {
-        change_scene(window, gui, wishes.scene.value_or(app.session.scene.file.string()), app.settings.profile, app);
+        const std::string scene = wishes.scene.value_or(app.session.scene.file.string());
+        const std::string profile = wishes.profile.value_or(app.settings.profile);
+        // what fails is not chosen, and not tried at the next start
+        if (change_scene(window, gui, scene, profile, app)) {
+            if (wishes.scene) app.settings.scene = scene;
+            app.settings.profile = profile;
+        }
     }
     change_settings(wishes, window, gui, app);
     if (wishes.press_by_hold && app.notices.offer_hold) press_by_hold(app);

@@ -85,6 +85,7 @@ Reviewing review_of(const scene::Plan& plan, const session::Trial& trial, const 
 
 std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
                        const scene::View& view) {
+    if (!debrief.scored) return words::kAdviceNotScored;
     const Examined shares = examined(trial.coverage, view);
     for (const session::Finding reason : kReasons) {
         for (std::size_t i = 0; i < plan.nodules.size(); ++i) {

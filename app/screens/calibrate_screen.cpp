@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -185,6 +186,7 @@ void form_lines(Gui& gui, CalibrateForm& form) {
 }  // namespace
 
 void keep_profile(CalibrateForm& form) {
+    form.problem.clear();
     attempt(form, [&] {
         calibration::close_recording(*form.recording);
         calibration::CalibrateOptions options;
@@ -203,6 +205,9 @@ void keep_profile(CalibrateForm& form) {
         for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
         form.recording.reset();
     });
+    if (!form.recording) return;
+    form.guide.note = form.problem;  // why there is no profile
+    form.refused_at = form.recording->session.points.size();
 }
 
 const char* number_to_type(const CalibrateForm& form) {
@@ -213,19 +218,25 @@ const char* number_to_type(const CalibrateForm& form) {
 }
 
 void refresh_fit(const calibration::Recording& recording, Guide& guide) {
+    if (guide.next_fit.valid()) {
+        if (guide.next_fit.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        guide.fit = guide.next_fit.get();
+    }
     const std::vector<calibration::CapturedPoint>& points = recording.session.points;
     if (points.size() == guide.fitted) return;
     guide.fitted = points.size();
-    guide.fit.reset();
-    try {
-        calibration::CalibrateOptions options;
-        options.range = recording.arguments.options.range;
-        options.bootstrap_fits = 0;
-        options.model = calibration::CurveModel::monotone_cubic;  // choosing among all models takes longer than a frame
-        guide.fit = calibration::calibrate(calibration::rows_of(points), options);
-    } catch (const files::InputError&) {
-        // too few points for a curve so far
-    }
+    calibration::CalibrateOptions options;
+    options.range = recording.arguments.options.range;
+    options.bootstrap_fits = 0;
+    guide.next_fit =
+        std::async(std::launch::async,
+                   [rows = calibration::rows_of(points), options]() -> std::optional<calibration::Calibration> {
+                       try {
+                           return calibration::calibrate(rows, options);
+                       } catch (const std::exception&) {
+                           return std::nullopt;  // too few points for a curve so far
+                       }
+                   });
 }
 
 GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide) {
@@ -269,8 +280,11 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     if (recording.knowledge.done) wrapped_text(words::kCurveKnown);
     // it is judged after each press, and not known in the middle of the first
     const bool judged = recording.known_repeats >= 0 || recording.resumed == session.points.size();
-    if (judged && !recording.knowledge.done && !recording.knowledge.missing.empty())
-        paragraph(recording.knowledge.missing);
+    if (judged && !recording.knowledge.done && !recording.knowledge.missing.empty()) {
+        const std::string& missing = recording.knowledge.missing;
+        const int press = recording.known_repeats + 1;  // points of the press that goes on now do not count yet
+        paragraph(press > 0 ? words::filled(words::kAfterPress, {std::to_string(press), missing}) : missing);
+    }
     if (!guide.note.empty()) paragraph(guide.note);
     ImGui::EndChild();
     end_panel("guide", gui);
@@ -285,10 +299,10 @@ std::shared_ptr<CalibrateForm> make_calibrate_form() { return std::make_shared<C
 void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& wishes) {
     if (form.recording) {
         refresh_fit(*form.recording, form.guide);
-        if (form.guide.fit && form.guide.note == form.problem) form.guide.note.clear();  // there was no curve before
+        const bool more = form.recording->session.points.size() != form.refused_at;
+        if (more && form.guide.note == form.problem) form.guide.note.clear();  // other points may be taken
         const GuideWishes asked = draw_guide(*form.recording, gui, form.guide);
         if (asked.keep) keep_profile(form);
-        if (asked.keep && form.recording) form.guide.note = form.problem;  // why there is no profile
         if (asked.stop) stop_recording(form);
         return;
     }

@@ -2,6 +2,7 @@
 // The guided calibration. It shows a form to connect a sensor, then what to press next, what was captured so far and
 // how well a curve fits it; at the end it stores a profile among the user's own.
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,9 +18,11 @@ namespace palpa::app {
 // What the guide has computed for a recording, and the number that the person types from a scale.
 struct Guide {
     std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
-    std::size_t fitted = 0;                       // number of points that it was fitted to
-    double shown_gf = 0.0;                        // reading of the scale, as typed
-    bool again = true;                            // the field for the reading has the keys in the next frame
+    std::size_t fitted = 0;                       // number of points that it was, or is now, fitted to
+    // the next fit, in its own thread: choosing among all models takes longer than a frame
+    std::future<std::optional<calibration::Calibration>> next_fit;
+    double shown_gf = 0.0;  // reading of the scale, as typed
+    bool again = true;      // the field for the reading has the keys in the next frame
     std::string note;
 };
 
@@ -28,7 +31,8 @@ struct GuideWishes {
     bool keep = false;  // make a profile of the recording
 };
 
-// Fits the curve again if the number of points has changed.
+// Fits the curve again if the number of points has changed: the curve that a profile of these points would get. The new
+// curve comes some frames later.
 void refresh_fit(const calibration::Recording& recording, Guide& guide);
 
 GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide);
@@ -43,6 +47,7 @@ struct CalibrateForm {
     std::unique_ptr<calibration::Recording> recording;
     Guide guide;
     std::string problem;
+    std::size_t refused_at = 0;  // number of points from which no profile could be made; the guide's note says why
 };
 
 // What has to be typed before a recording with this sensor can begin; empty if nothing.

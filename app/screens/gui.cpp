@@ -232,6 +232,11 @@ void Gui::hand_over(const PanelInput& input) {
 
 bool Gui::shows_focus() const { return !ImGui::GetCurrentContext()->NavDisableHighlight; }
 
+bool Gui::enter_presses_it() const {
+    return held_as_[platform::key::enter] == platform::key::space ||
+           held_as_[platform::key::pad_enter] == platform::key::space;
+}
+
 void Gui::hand_over_key(const PanelInput& input) {
     ImGuiIO& io = ImGui::GetIO();
     io.KeyCtrl = input.ctrl;

@@ -54,7 +54,8 @@ class Gui {
     void claim(const PanelArea& area) { areas_.push_back(area); }
     // True if a key (platform/window_event.h) goes down in this frame; always false while text is typed.
     bool pressed(int key, bool ctrl = false) const;
-    bool shows_focus() const;  // a ring marks the control that Enter and Space press
+    bool shows_focus() const;       // a ring marks the control that Enter and Space press
+    bool enter_presses_it() const;  // Enter is down, and was given to that control
     // Returns whether F12 went down since the last call, whatever the panels do with keys. It does not wait for a frame.
     bool take_stop();
     // Returns the field that takes letters now, for a screen with an on-screen keyboard; nothing if no field does.

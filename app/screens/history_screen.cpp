@@ -190,6 +190,7 @@ std::string local_time_text(const std::string& utc) {
 }
 
 std::string found_text(const KeptTrial& trial) {
+    if (!trial.scored) return words::filled(words::kHistoryNotScored, {std::to_string(trial.marks.size())});
     if (trial.nodules.empty()) return words::filled(words::kHistoryNone, {std::to_string(trial.false_positives)});
     return words::filled(words::kHistoryFound, {std::to_string(trial.found), std::to_string(trial.nodules.size()),
                                                 std::to_string(trial.false_positives)});

@@ -141,7 +141,7 @@ void draw_tools(const PartTissue& tissue, const Gui& gui, PartView& view) {
             view.tool = tool;
     }
     if (view.tool == PartTool::press) return;
-    const auto& materials = tissue.designs[0].part.materials;
+    const std::vector<std::string> materials = materials_of(tissue);
     const bool permutes = view.tool == PartTool::permute;
     const float half_px = share_of_line_px(permutes ? 2 : 1);
     const std::string radius =
@@ -152,7 +152,7 @@ void draw_tools(const PartTissue& tissue, const Gui& gui, PartView& view) {
     if (!permutes) return;
     ImGui::SameLine();
     view.material = std::min(view.material, materials.size() - 1);
-    const std::string material = materials[view.material].name + "###material";
+    const std::string material = materials[view.material] + "###material";
     if (big_button(material.c_str(), "", {half_px, kTarget_mm, true, false, words::kHintMaterial}, gui))
         view.material = (view.material + 1) % materials.size();
 }
@@ -172,8 +172,8 @@ PartWish edit_of(const PartTissue& tissue, const PartView& view) {
     const Eigen::Vector2d& origin = tissue.designs[out.design].origin_m;
     for (const auto& p : view.stroke_m) out.path_m.push_back({p[0] - origin.x(), p[1] - origin.y()});
     out.radius_m = 1e-3 * kToolRadii_mm[static_cast<std::size_t>(view.radius)];
-    const auto& materials = tissue.designs[out.design].part.materials;
-    out.material = materials[std::min(view.material, materials.size() - 1)].name;
+    const std::vector<std::string> materials = materials_of(tissue);
+    out.material = materials[std::min(view.material, materials.size() - 1)];
     return out;
 }
 
@@ -286,6 +286,16 @@ void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, W
 }
 
 }  // namespace
+
+std::vector<std::string> materials_of(const PartTissue& tissue) {
+    std::vector<std::string> names;
+    for (const PartDesign& design : tissue.designs) {
+        for (const parts::PartMaterial& material : design.part.materials) {
+            if (std::find(names.begin(), names.end(), material.name) == names.end()) names.push_back(material.name);
+        }
+    }
+    return names;
+}
 
 void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     const PartTissue& tissue = *scene::parts_of(shown.plan.tissue);

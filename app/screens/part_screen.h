@@ -15,6 +15,9 @@ void draw_parts(const Shown& shown, const Gui& gui, PartView& view);
 // Draws the panel with numbers and tools, and the curves; takes strokes of the tools.
 void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);
 
+// The names of the designs' materials, each once: the designs may list them in another order, or have others.
+std::vector<std::string> materials_of(const scene::PartTissue& tissue);
+
 void part_keys(const Shown& shown, const Gui& gui, PartView& view, Wishes& wishes);
 
 }  // namespace palpa::app

@@ -71,22 +71,22 @@ void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) 
     }
 }
 
-void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawList& draw) {
+void draw_marks(const Shown& shown, const session::Debrief& debrief, float mm, ImDrawList& draw) {
     std::vector<Label> labels;
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
         const session::Mark& mark = shown.trial.marks[i];
         const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
-        const study::MarkKind kind = score.marks[i].kind;
-        if (kind == study::MarkKind::false_mark) {
+        const study::MarkKind kind = debrief.score.marks[i].kind;
+        if (debrief.scored && kind == study::MarkKind::false_mark) {
             cross(draw, at, 1.7f * mm, kDark, 1.8f * mm);
             cross(draw, at, 1.7f * mm, kInk, 0.7f * mm);
         } else {
             draw.AddCircleFilled(at, 1.7f * mm, kDark);
             if (kind == study::MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
         }
-        const char* pattern = kind == study::MarkKind::hit     ? "{}"
-                              : kind == study::MarkKind::again ? words::kMarkDuplicate
-                                                               : words::kMarkFalse;
+        const char* pattern = !debrief.scored || kind == study::MarkKind::hit ? "{}"
+                              : kind == study::MarkKind::again                ? words::kMarkDuplicate
+                                                                              : words::kMarkFalse;
         std::string word = words::filled(pattern, {std::to_string(i + 1)});
         if (mark.confidence > 0) word += words::filled(words::kConfidenceOf, {std::to_string(mark.confidence)});
         labels.push_back({at, word});
@@ -112,12 +112,16 @@ void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui
     const auto share = [](double value, int count, int of) {
         return words::filled(words::kShareOf, {percent(value), std::to_string(count), std::to_string(of)});
     };
-    value_line(words::kSensitivity, share(s.sensitivity, s.true_positives, s.true_positives + s.false_negatives),
-               column_px);
-    hint_for_last(words::kHintSensitivity);
-    value_line(words::kPpv, share(s.ppv, s.true_positives, s.true_positives + s.false_positives), column_px);
-    hint_for_last(words::kHintPpv);
-    value_line(words::kFalsePositives, std::to_string(s.false_positives), column_px);
+    if (debrief.scored) {
+        value_line(words::kSensitivity, share(s.sensitivity, s.true_positives, s.true_positives + s.false_negatives),
+                   column_px);
+        hint_for_last(words::kHintSensitivity);
+        value_line(words::kPpv, share(s.ppv, s.true_positives, s.true_positives + s.false_positives), column_px);
+        hint_for_last(words::kHintPpv);
+        value_line(words::kFalsePositives, std::to_string(s.false_positives), column_px);
+    } else {
+        value_line(words::kMarksMade, std::to_string(shown.trial.marks.size()), column_px);
+    }
     value_line(words::kTime, clock_text(shown.trial_s), column_px);
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         std::string text = shown.plan.nodules[i].id + ": " + name_of(debrief.findings[i]);
@@ -180,7 +184,7 @@ void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::De
     draw_coverage(shown.view, shown.trial.coverage, gui.mm(), draw);
     draw_path(shown, gui.mm(), draw);
     draw_nodules(shown, debrief, gui.mm(), draw);
-    draw_marks(shown, debrief.score, gui.mm(), draw);
+    draw_marks(shown, debrief, gui.mm(), draw);
 }
 
 void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing& reviewing, Gui& gui, Wishes& wishes) {

@@ -110,7 +110,8 @@ void draw_choices(const std::vector<std::string>& choices, float least_px, const
         ImGui::PushID(static_cast<int>(i));
         const bool chosen = answer == choices[i];
         if (big_button(choices[i].c_str(), "", {width_px, kTarget_mm, true, chosen}, gui))
-            answer = chosen ? "" : choices[i];
+            // a tap or Space takes an answer back; Enter twice, as people press it, does not
+            answer = chosen && !gui.enter_presses_it() ? "" : choices[i];
         ImGui::PopID();
     }
 }
@@ -124,6 +125,15 @@ void draw_anchors(const study::Item& item, float width_px) {
     const float end_px = left_px + std::max(width_px - ImGui::CalcTextSize(item.high.c_str()).x, 0.0f);
     ImGui::SetCursorPosX(std::max(end_px, ImGui::GetCursorPosX()));
     ImGui::TextDisabled("%s", item.high.c_str());
+}
+
+// What a number that is typed may be, and what the ends of its scale mean: "A number from 0 (low) to 100 (high)".
+std::string scale_text(const study::Item& item) {
+    const auto end = [](int number, const std::string& meaning) {
+        const std::string digits = std::to_string(number);
+        return meaning.empty() ? digits : words::filled(words::kEndOfScale, {digits, meaning});
+    };
+    return words::filled(words::kScaleFromTo, {end(*item.from, item.low), end(*item.to, item.high)});
 }
 
 // `focus`: the item's text field takes the keys.
@@ -153,6 +163,7 @@ void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answe
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
     // Enter takes the focus from the field, which an answer that is refused needs again
     if (is_deactivated_by_enter() && !is_answer(item, answer)) ImGui::SetKeyboardFocusHere(-1);
+    if (item.from) paragraph(scale_text(item));
     // the field scrolls; what it does not hold can still be read
     if (ImGui::CalcTextSize(answer.c_str()).x > width_px - 4.0f * gui.mm()) paragraph(answer);
 }

@@ -110,7 +110,7 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
         ImGui::TableNextColumn();
         const std::string command = actuator.cavity ? in_unit(soft.moment.command[k], 1e6, 2, "ml")
                                                     : in_unit(soft.moment.command[k], 1e3, 2, "mm");
-        ImGui::Text("%s%s", command.c_str(), at_limit ? " !" : "");
+        ImGui::TextUnformatted(at_limit ? words::filled(words::kAtLimit, {command}).c_str() : command.c_str());
     }
     ImGui::EndTable();
 }
@@ -180,6 +180,19 @@ double round_up(double value) {
     return 10.0 * power;
 }
 
+// Says in the plot's upper left corner, where a force that rises with depth leaves space, which marks are which.
+void draw_legend(const PanelArea& area, const TangibleShown& soft, float mm, ImDrawList& draw) {
+    const float small_px = 0.8f * ImGui::GetFontSize();
+    const float x = area.x0 + 2.0f * mm;
+    float y = area.y0 + 0.8f * mm + 0.5f * small_px;
+    draw.AddCircle(ImVec2(x, y), 0.8f * mm, kInk, 12);
+    draw.AddText(ImGui::GetFont(), small_px, ImVec2(x + 1.8f * mm, y - 0.5f * small_px), kInk, words::kWantedForce);
+    y += 1.2f * small_px;
+    draw.AddCircleFilled(ImVec2(x, y), 0.6f * mm, kLag);
+    draw.AddText(ImGui::GetFont(), small_px, ImVec2(x + 1.8f * mm, y - 0.5f * small_px), kInk,
+                 rendered_title(soft.body).c_str());
+}
+
 void draw_press(const PanelArea& area, const TangibleShown& soft, float mm) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     Plot plot;
@@ -193,6 +206,7 @@ void draw_press(const PanelArea& area, const TangibleShown& soft, float mm) {
     plot.most_x = round_up(depth_mm);
     plot.most_y = round_up(force_N);
     draw_plot_axes(plot, {words::kForceOverDepth, words::kDepthAxis, words::kForceAxis}, mm, draw);
+    draw_legend(plot.area, soft, mm, draw);
     for (const ForceAtDepth& at : soft.press) {
         if (!std::isfinite(at.depth_m)) continue;
         if (std::isfinite(at.rendered_N))

@@ -45,7 +45,11 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
 // Draws one line that takes up its space even if it is empty, so that nothing moves when it fills.
 void draw_contact_note(const Shown& shown) {
     const bool held = shown.tactile != nullptr && shown.tactile->moment.held;
-    const char* note = held ? words::kPressLightly : contact_note(shown.state.contact, shown.experimenter);
+    // force and shape hold at the limit of force, or where the tissue is not known deeper, which soft tissue is below it
+    const bool of_force = held && shown.tactile->moment.force_N > 0.98 * shown.tactile->force_limit_N;
+    const char* note = of_force ? words::kPressLightly
+                       : held   ? words::kNoDeeper
+                                : contact_note(shown.state.contact, shown.experimenter);
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 

@@ -157,6 +157,10 @@ inline constexpr const char* kAdviceMostMissed =
 inline constexpr const char* kAdviceMostUnexamined =
     "You found every nodule, but {} % of the tissue was never examined: a nodule there would have been missed.";
 inline constexpr const char* kAdviceGood = "You found every nodule, and every mark is on a nodule.";
+inline constexpr const char* kAdviceNotScored =
+    "This map does not say which nodules it has, so marks are not scored. `palpa maps detect MAP --write` looks for "
+    "them.";
+inline constexpr const char* kMarksMade = "Marks";
 inline constexpr const char* kAdviceNoNodules = "This tissue has no nodules, and you marked none.";
 inline constexpr const char* kUpperLeft = "upper left";
 inline constexpr const char* kUpperMiddle = "upper middle";
@@ -246,6 +250,7 @@ inline constexpr const char* kFoundAxis = "nodules found (%)";
 inline constexpr const char* kTrialAxis = "trial";
 inline constexpr const char* kPlay = "Play";
 inline constexpr const char* kHistoryLine = "{}  {}  {}";
+inline constexpr const char* kHistoryNotScored = "Nodules not known, marks: {}";
 inline constexpr const char* kHistoryNone = "No nodules, false positives: {}";
 inline constexpr const char* kHistoryFound = "Found {} of {}, false positives: {}";
 
@@ -265,6 +270,9 @@ inline constexpr const char* kHintUndoEdit = "Takes the last change back";
 inline constexpr const char* kRedo = "Redo";
 inline constexpr const char* kKeyRedo = "Ctrl+Y";
 inline constexpr const char* kHintRedoEdit = "Makes the change again that was taken back last";
+inline constexpr const char* kProfileGone =
+    "{}: the profile that was chosen is gone. Until another one is chosen, each scene has its own.";
+inline constexpr const char* kNoSuchMaterial = "This design has no material {}.";
 inline constexpr const char* kNothingChanged =
     "Nothing was changed: no part is there, it would fall in two, or it is so already.";
 inline constexpr const char* kEarlierEdits = "Earlier changes";
@@ -340,6 +348,7 @@ inline constexpr const char* kForceLimit = "limit";
 inline constexpr const char* kFeelFirstOn = "Press the first surface with your finger, then choose Done.";
 inline constexpr const char* kFeelSecondOn = "Press the second surface with your finger, then choose Done.";
 inline constexpr const char* kPressLightly = "At the limit: press lightly.";
+inline constexpr const char* kNoDeeper = "No deeper here: press lightly.";
 inline constexpr const char* kDevicesMissing = "Missing: {}";
 inline constexpr const char* kDevicesStopped = "The devices were stopped: {}. Start releases them and begins again.";
 
@@ -362,6 +371,7 @@ inline constexpr const char* kSoftStoppedBanner =
     "Stopped: {}. The soft device is relaxed. Press G, or choose Soft device in the menu, to release it.";
 inline constexpr const char* kSoftStoppedInStudy = "Stopped: {}. The soft device is relaxed.";
 inline constexpr const char* kSoftDeformed = "{}: outline wanted, filled rendered";
+inline constexpr const char* kAtLimit = "{} (limit)";
 inline constexpr const char* kWantedForce = "Wanted";
 inline constexpr const char* kRenderedForce = "Rendered ({})";
 inline constexpr const char* kForceError = "Force error";
@@ -463,6 +473,7 @@ inline constexpr const char* kPort = "Port";
 inline constexpr const char* kName = "Name";
 inline constexpr const char* kSavedAs = "Saved as {}; select it in the menu.";
 inline constexpr const char* kSensorHealth = "{}: {} readings, {} lost, {} duplicate, {} out of order, {} stalls";
+inline constexpr const char* kAfterPress = "After press {}: {}";
 inline constexpr const char* kCurveKnown = "The curve is known to 5 % everywhere.";
 inline constexpr const char* kHowToCalibrate =
     "Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, and "
@@ -613,6 +624,8 @@ inline constexpr const char* kStudyStopped = "The study has stopped";
 inline constexpr const char* kBreak = "Time for a break";
 inline constexpr const char* kHasTakenPart = "Participant {} has already taken part";
 inline constexpr const char* kTrialsDone = "Finished trials: {} of {}. A trial that was interrupted is repeated.";
+inline constexpr const char* kEndOfScale = "{} ({})";
+inline constexpr const char* kScaleFromTo = "A number from {} to {}";
 inline constexpr const char* kNumberFromTo = "Enter a number from {} to {}.";
 inline constexpr const char* kPracticeOf = "Practice, trial {}";
 inline constexpr const char* kThereAre = "Number of nodules: {}.";

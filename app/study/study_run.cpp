@@ -61,6 +61,12 @@ void check_displays(const StudyRun& run) {
 
 bool plain(const std::string& code) { return code.size() <= 20 && study::is_code(code); }
 
+const char* what_is_wrong(const std::string& code) {
+    return study::reads_as_missing(code)
+               ? "Tables in pandas and R take this code for a missing value. Enter another one."
+               : "Enter up to 20 letters and digits.";
+}
+
 void write_now(const StudyRun& run) {
     const fs::path subject = run.directory / ("sub-" + run.code);
     fs::create_directories(subject);
@@ -238,7 +244,11 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     check_displays(run);
     study::open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
     if (code.empty()) return run;
-    if (!plain(code)) throw files::bad_input("--participant", "", files::shown(code), "up to 20 letters and digits");
+    if (!plain(code))
+        throw files::bad_input("--participant", "", files::shown(code),
+                               study::reads_as_missing(code)
+                                   ? "a code that tables in pandas and R do not take for a missing value"
+                                   : "up to 20 letters and digits");
     enter_code(code, run);
     if (!run.note.empty())
         throw files::bad_input("--participant", "", files::shown(code) + ", " + why_refused(run, code), "a new code");
@@ -261,7 +271,7 @@ void carry_out(const StudyWish& wish, StudyRun& run) {
 
 void enter_code(const std::string& code, StudyRun& run) {
     run.note.clear();
-    if (!plain(code)) return refuse_code("Enter up to 20 letters and digits.", run);
+    if (!plain(code)) return refuse_code(what_is_wrong(code), run);
     if (!kept(run, [&] { lock_code(code, run); })) return;
     if (run.lock->held_elsewhere()) {
         run.lock.reset();

@@ -38,6 +38,13 @@ void check_nodules(const fs::path& file, const scene::Plan& plan) {
     }
 }
 
+// Throws InputError for a search on tissue whose nodules nobody has named: it could not be scored.
+void check_known(const StudyScene& found) {
+    if (found.plan->nodules_known) return;
+    throw files::bad_input(found.scene.file.string(), "tissue", "a map that does not say which nodules it has",
+                           "`nodules` in its map.json (`palpa maps detect MAP --write` looks for them); [] for none");
+}
+
 // Loads each scene once, however many conditions show it with the same profile.
 class SceneLoader {
   public:
@@ -71,6 +78,7 @@ StudyScenes load_study_scenes(const study::Protocol& protocol) {
         if (condition.scene.empty()) continue;
         try {
             scenes.back() = loader.load(condition);
+            if (!study::compares(study::task_of(protocol, i))) check_known(*scenes.back());
         } catch (const files::InputError& error) {
             throw files::InputError(protocol.file.string() + ": conditions[" + std::to_string(i) + "] " +
                                     files::shown(condition.id) + ": " + error.what());

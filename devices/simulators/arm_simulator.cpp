@@ -88,9 +88,9 @@ int main(int argc, char** argv) {
     CLI::App app("A simulated force arm with hand and force sensor on loopback UDP");
     app.add_option("--press", press, "PRESS.tsv that the hand follows; without it there is no hand");
     app.add_option("--seed", options.seed, "of the arm's parameters, each within 20 %; 0: none of them is changed");
-    app.add_option("--port", port, "0: any that is free");
-    app.add_option("--sensor-port", sensor_port, "0: any that is free");
-    app.add_option("--counts-per-N", sim.counts_per_N)->capture_default_str();
+    app.add_option("--port", port, "0: any that is free")->check(CLI::Range(0, 65535));
+    app.add_option("--sensor-port", sensor_port, "0: any that is free")->check(CLI::Range(0, 65535));
+    app.add_option("--counts-per-N", sim.counts_per_N)->check(CLI::Range(1e-6, 1e12))->capture_default_str();
     app.add_option("--first-sequence", first, "to see it wrap around");
     app.add_option("--lose", options.lose, "share of the answers")->check(CLI::Range(0.0, 1.0));
     app.add_option("--duplicate", options.duplicate)->check(CLI::Range(0.0, 1.0));

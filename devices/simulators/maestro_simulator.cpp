@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
     CLI::App app("Simulated Pololu Maestro boards with servos and pins on a pseudo-terminal");
     const auto share = CLI::Range(0.0, 1.0);
     app.add_option("DEVICE", file, "device file of the pins")->required();
-    app.add_option("--link", link, "symbolic link to the terminal");
+    add_link_option(app, link);
     app.add_option("--heights", heights, "table of the pins' true heights, every 4 ms");
     app.add_option("--seed", options.seed)->capture_default_str();
     app.add_option("--scatter", scatter, "share by which the pins differ from the device file")->check(share);
@@ -77,7 +77,12 @@ int main(int argc, char** argv) {
         return 2;
     }
     for (const std::size_t pin : stuck) {
-        if (pin < boards.pin.size()) boards.pin[pin].stuck = true;
+        if (pin >= boards.pin.size()) {
+            std::fprintf(stderr, "maestro_simulator: --stuck: found %zu, expected a pin from 0 to %zu\n", pin,
+                         boards.pin.size() - 1);
+            return 2;
+        }
+        boards.pin[pin].stuck = true;
     }
     std::FILE* truth = heights.empty() ? nullptr : std::fopen(heights.c_str(), "w");
     Terminal terminal = plug_in(link);
@@ -115,6 +120,9 @@ int main(int argc, char** argv) {
                     static_cast<long long>(board.timeouts));
     }
     if (!link.empty()) std::filesystem::remove(link);
-    if (truth != nullptr) std::fclose(truth);
+    if (truth != nullptr && std::fclose(truth) != 0) {
+        std::fprintf(stderr, "maestro_simulator: %s: could not be written to its end\n", heights.c_str());
+        return 1;
+    }
     return 0;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <poll.h>
 #include <stdexcept>
 
@@ -17,6 +18,7 @@ namespace {
 volatile std::sig_atomic_t garbage_asked = 0;
 
 constexpr double kListens_s = 2.0;   // after "start"
+constexpr double kPause_s = 0.5;     // of who drives
 constexpr double kInRange = 1e-3;    // of a range: counts are whole, and so is what comes back
 constexpr double kFullScale = 1.25;  // of a pressure controller, over the highest set point
 
@@ -63,11 +65,16 @@ std::vector<std::uint8_t> answer_of(std::span<const std::uint8_t> in, Model& mod
     return out;
 }
 
+std::string no_terminal() {
+    return std::string("no pseudo-terminal, or no link to it, can be had: ") + std::strerror(errno);
+}
+
 }  // namespace
 
 void add_wires_options(CLI::App& app, WiresOptions& options) {
     add_line_options(app, options.faults);
-    app.add_option("--links", options.links, "folder for symbolic links to the terminals, by the ports' names");
+    app.add_option("--links", options.links, "folder for symbolic links to the terminals, by the ports' names")
+        ->check(CLI::ExistingDirectory);
     app.add_flag("!--no-watchdogs", options.watchdogs, "devices that hold their force when the line falls silent");
     app.add_flag("--sensor-udp", options.sensor_by_udp, "the sensor speaks by UDP");
     app.add_option("--sensor-Hz", options.sensor_rate_Hz)->check(CLI::Range(1.0, 1000.0))->capture_default_str();
@@ -100,12 +107,12 @@ void RigWires::plug(bool in) {
     for (std::size_t i = 0; i < line_.size(); ++i) {
         if (!in) unplug(line_[i].terminal);
         if (in) line_[i].terminal = plug_in(link_of(options_, rig_.ports[i].name));
-        if (in && line_[i].terminal.master < 0) throw std::runtime_error("no pseudo-terminal can be had");
+        if (in && line_[i].terminal.master < 0) throw std::runtime_error(no_terminal());
     }
     if (rig_.sensor.empty() || udp_ >= 0) return;
     if (!in) return unplug(sensor_);
     sensor_ = plug_in(link_of(options_, "sensor"));
-    if (sensor_.master < 0) throw std::runtime_error("no pseudo-terminal can be had");
+    if (sensor_.master < 0) throw std::runtime_error(no_terminal());
 }
 
 std::string RigWires::ports() const {
@@ -137,6 +144,10 @@ void RigWires::talk(std::size_t port) {
     SimulatedLine& line = line_[port];
     std::uint8_t bytes[1024];
     const ssize_t n = ::read(line.terminal.master, bytes, sizeof bytes);
+    if (n > 0) {
+        if (time_s_ - heard_s_ > kPause_s) talking_from_s_ = time_s_;
+        heard_s_ = time_s_;
+    }
     const std::vector<std::uint8_t> in =
         n > 0 ? through(options_.faults, std::span(bytes, static_cast<std::size_t>(n)), random_)
               : std::vector<std::uint8_t>{};
@@ -242,6 +253,8 @@ bool RigWires::relaxed(std::size_t channel) const {
     return std::abs(wanted(channel) - info.relaxed) <=
            kInRange * (info.upper - info.lower) + 1.0 / std::abs(info.counts_per_unit);
 }
+
+double RigWires::talking_s() const { return time_s_ - heard_s_ > kPause_s ? 0.0 : time_s_ - talking_from_s_; }
 
 void RigWires::send_reading(std::int32_t counts) {
     const auto t_us = static_cast<std::uint32_t>(static_cast<std::uint64_t>(1e6 * time_s_));

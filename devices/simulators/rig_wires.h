@@ -56,6 +56,8 @@ class RigWires {
     // What the actuator does now, in its unit; where it is relaxed, by whatever reason, that value.
     double value(std::size_t channel) const;
     bool relaxed(std::size_t channel) const;
+    // For how long bytes have come on any line without a pause of half a second.
+    double talking_s() const;
     // Sends a reading if one is due at this moment.
     void show_displacement(double displacement_m);
     double elapsed_s() const { return time_s_; }
@@ -81,6 +83,8 @@ class RigWires {
     double began_s_ = 0.0;
     double time_s_ = 0.0;
     double shown_due_s_ = 0.0;
+    double heard_s_ = -1e9;
+    double talking_from_s_ = 0.0;
     bool plugged_ = false;
     std::int64_t out_of_range_ = 0;
     std::mt19937_64 random_;

@@ -1,6 +1,8 @@
 #pragma once
 // A pseudo-terminal of a simulator, which can be unplugged and plugged in again.
 
+#include <CLI/CLI.hpp>
+#include <cerrno>
 #include <fcntl.h>
 #include <filesystem>
 #include <stdlib.h>
@@ -16,7 +18,22 @@ struct Terminal {
     std::string path;
 };
 
-// `link`: a symbolic link to it, or "". Without success `master` is -1.
+inline void unplug(Terminal& terminal) {
+    ::close(terminal.slave);
+    ::close(terminal.master);
+    terminal = {};
+}
+
+// Adds --link, whose folder must be there.
+inline void add_link_option(CLI::App& app, std::string& link) {
+    const auto is_in_folder = [](const std::string& path) {
+        const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+        return std::filesystem::is_directory(folder) ? std::string() : folder.string() + ": is no folder";
+    };
+    app.add_option("--link", link, "symbolic link to the terminal")->check(CLI::Validator(is_in_folder, ""));
+}
+
+// `link`: a symbolic link to it, or "". Without success `master` is -1, and errno says why.
 inline Terminal plug_in(const std::string& link) {
     Terminal terminal;
     terminal.master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
@@ -27,17 +44,14 @@ inline Terminal plug_in(const std::string& link) {
     ::tcgetattr(terminal.slave, &settings);
     ::cfmakeraw(&settings);
     ::tcsetattr(terminal.slave, TCSANOW, &settings);
-    if (!link.empty()) {
-        std::filesystem::remove(link);
-        std::filesystem::create_symlink(terminal.path, link);
-    }
+    if (link.empty()) return terminal;
+    std::error_code failed;
+    std::filesystem::remove(link, failed);
+    std::filesystem::create_symlink(terminal.path, link, failed);
+    if (!failed) return terminal;
+    unplug(terminal);
+    errno = failed.value();
     return terminal;
-}
-
-inline void unplug(Terminal& terminal) {
-    ::close(terminal.slave);
-    ::close(terminal.master);
-    terminal = {};
 }
 
 }  // namespace palpa::devices::simulators

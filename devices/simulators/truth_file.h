@@ -15,7 +15,8 @@ namespace palpa::devices::simulators {
 class TruthFile {
   public:
     // An empty path: nothing is written. Throws std::runtime_error if the file cannot be written.
-    explicit TruthFile(const std::string& path) : file_(path.empty() ? nullptr : std::fopen(path.c_str(), "w")) {
+    explicit TruthFile(const std::string& path)
+        : path_(path), file_(path.empty() ? nullptr : std::fopen(path.c_str(), "w")) {
         if (path.empty()) return;
         if (file_ == nullptr) throw std::runtime_error(path + ": cannot be written");
         thread_ = std::thread([this] { run(); });
@@ -24,7 +25,8 @@ class TruthFile {
         if (file_ == nullptr) return;
         ending_.store(true);
         thread_.join();
-        std::fclose(file_);
+        if (std::fclose(file_) != 0 || failed_)
+            std::fprintf(stderr, "%s: could not be written to its end\n", path_.c_str());
     }
     TruthFile(const TruthFile&) = delete;
     TruthFile& operator=(const TruthFile&) = delete;
@@ -44,13 +46,15 @@ class TruthFile {
                 const std::lock_guard<std::mutex> guard(text_guard_);
                 text.swap(text_);
             }
-            std::fwrite(text.data(), 1, text.size(), file_);
-            std::fflush(file_);
+            failed_ = std::fwrite(text.data(), 1, text.size(), file_) != text.size() || failed_;
+            failed_ = std::fflush(file_) != 0 || failed_;
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
     }
 
+    std::string path_;
     std::FILE* file_;
+    bool failed_ = false;  // of the thread, until it has ended
     std::mutex text_guard_;
     std::string text_;
     std::atomic<bool> ending_{false};

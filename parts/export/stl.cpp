@@ -49,7 +49,12 @@ std::string stl_bytes(const Surface& surface, const std::string& name) {
 }
 
 std::vector<std::string> file_names(const Part& part) {
-    std::vector<std::string> out;
+    // some disks take soft and Soft for one name
+    const auto lower = [](std::string name) {
+        for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        return name;
+    };
+    std::vector<std::string> out, taken;
     for (const PartMaterial& material : part.materials) {
         std::string name;
         for (const char c : material.name) {
@@ -59,9 +64,10 @@ std::vector<std::string> file_names(const Part& part) {
         if (name.empty()) name = "_";
         name.resize(std::min<std::size_t>(name.size(), 100));
         std::string unique = name;
-        for (int n = 2; std::find(out.begin(), out.end(), unique) != out.end(); ++n)
+        for (int n = 2; std::find(taken.begin(), taken.end(), lower(unique)) != taken.end(); ++n)
             unique = name + "_" + std::to_string(n);
         out.push_back(unique);
+        taken.push_back(lower(unique));
     }
     return out;
 }

@@ -50,15 +50,26 @@ struct Unit {
     char of;  // l length, f force, t time
 };
 // "m" always means metres: a column "fx_m" is not taken for a force
-constexpr std::array<Unit, 9> kUnits{{{"mm", 1e-3, 'l'},
-                                      {"um", 1e-6, 'l'},
-                                      {"cm", 1e-2, 'l'},
-                                      {"m", 1.0, 'l'},
-                                      {"mN", 1e-3, 'f'},
-                                      {"kN", 1e3, 'f'},
-                                      {"N", 1.0, 'f'},
-                                      {"ms", 1e-3, 't'},
-                                      {"s", 1.0, 't'}}};
+constexpr std::array<Unit, 14> kUnits{{{"mm", 1e-3, 'l'},
+                                       {"um", 1e-6, 'l'},
+                                       {"cm", 1e-2, 'l'},
+                                       {"m", 1.0, 'l'},
+                                       {"mN", 1e-3, 'f'},
+                                       {"kN", 1e3, 'f'},
+                                       {"N", 1.0, 'f'},
+                                       {"gf", 9.80665e-3, 'f'},
+                                       {"kgf", 9.80665, 'f'},
+                                       {"lbf", 4.4482216152605, 'f'},
+                                       {"uN", 1e-6, 'f'},
+                                       {"in", 0.0254, 'l'},
+                                       {"ms", 1e-3, 't'},
+                                       {"s", 1.0, 't'}}};
+
+// Letters that say a unit elsewhere, of which it is not known what they mean here (g of a scale: mass, force?). The last part
+// of a name that is one of them is no unit-less name, and is not taken for mm or N.
+constexpr std::array<std::string_view, 23> kOtherUnits{"g",    "kg", "mg", "lb",   "lbs", "oz",  "ozf", "dyn",
+                                                       "dyne", "kp", "Pa", "kPa",  "MPa", "bar", "psi", "V",
+                                                       "mV",   "nm", "dm", "inch", "ft",  "mil", "us"};
 
 struct SplitName {
     std::string bare;            // lower case
@@ -71,21 +82,26 @@ std::string lower(std::string_view text) {
     return out;
 }
 
+bool is_blank(char c) { return c == ' ' || c == '"' || c == '\''; }
+
+// What follows the last blank, underscore or bracket of a name: its unit, if it has one. "" for a name of one part.
+std::string_view last_part(std::string_view name) {
+    while (!name.empty() && (is_blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
+    const auto cut = name.find_last_of("_ ([");
+    return cut == std::string_view::npos || cut == 0 ? std::string_view() : name.substr(cut + 1);
+}
+
 // Splits a name into its bare part and its unit: "Fz [mN]", "fz_mN", "x (mm)", "x".
 SplitName split_name(std::string_view name) {
-    const auto blank = [](char c) { return c == ' ' || c == '"' || c == '\''; };
-    while (!name.empty() && blank(name.front())) name.remove_prefix(1);
-    while (!name.empty() && (blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
-    const auto cut = name.find_last_of("_ ([");
-    if (cut != std::string_view::npos && cut > 0) {
-        const std::string_view last = name.substr(cut + 1);
-        for (const Unit& unit : kUnits) {
-            if (last != unit.name) continue;
-            name = name.substr(0, cut);
-            while (!name.empty() && (name.back() == ' ' || name.back() == '_')) name.remove_suffix(1);
-            return {lower(name), &unit};
-        }
+    while (!name.empty() && is_blank(name.front())) name.remove_prefix(1);
+    const std::string_view last = last_part(name);
+    for (const Unit& unit : kUnits) {
+        if (last != unit.name) continue;
+        name = name.substr(0, static_cast<std::size_t>(last.data() - name.data()) - 1);
+        while (!name.empty() && (name.back() == ' ' || name.back() == '_')) name.remove_suffix(1);
+        return {lower(name), &unit};
     }
+    while (!name.empty() && (is_blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
     return {lower(name), nullptr};
 }
 
@@ -106,14 +122,30 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
     if (name.unit != nullptr) {
         if (name.unit->of != kind) {
             throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
-                                   kind == 'f'   ? "a force (N, mN)"
+                                   kind == 'f'   ? "a force (N, mN, gf)"
                                    : kind == 'l' ? "a length (mm, m, um)"
                                    : kind == 't' ? "a time (s, ms)"
                                                  : "a number without a unit");
         }
         return name.unit->to_SI;
     }
+    const std::string_view last = last_part(column);
+    if (kind != ' ' && std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end()) {
+        throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
+                               std::string("one in ") +
+                                   (kind == 'f'   ? "N, mN, gf, kgf or lbf"
+                                    : kind == 'l' ? "mm, m, cm, um or in"
+                                                  : "s or ms") +
+                                   ", or an option that states its unit");
+    }
     return kind == 'l' ? 1e-3 : 1.0;
+}
+
+std::string unit_named(Role role, double to_SI) {
+    for (const Unit& unit : kUnits) {
+        if (unit.of == kind_of(role) && unit.to_SI == to_SI) return unit.name;
+    }
+    return "";
 }
 
 std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std::string_view name) {
@@ -160,8 +192,8 @@ Columns find_columns(const files::Table& table, const ImportOptions& options) {
             asked != options.columns.end() ? index_of(table.columns(), asked->second) : usual_index(known, names);
         if (!index) continue;
         const std::string& name = table.columns()[*index];
-        columns.of[static_cast<std::size_t>(known.role)] =
-            Column{*index, unit_of(known.role, names[*index], options, name, table.file()), name};
+        const double to_SI = unit_of(known.role, names[*index], options, name, table.file());
+        columns.of[static_cast<std::size_t>(known.role)] = Column{*index, to_SI, name, unit_named(known.role, to_SI)};
     }
     return columns;
 }

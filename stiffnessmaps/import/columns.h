@@ -35,6 +35,7 @@ struct Column {
     std::size_t index = 0;
     double to_SI = 1.0;
     std::string name;  // as in the file
+    std::string unit;  // that it is taken in; "" for a number without one
 };
 
 struct Columns {

@@ -149,6 +149,7 @@ void keep_regions(const Detection& detection, Map& map) {
             nodule.diameter_m = std::sqrt(4.0 * region.area_m2 / std::numbers::pi);
         }
         nodules.push_back(nodule);
+        map.nodules_known = true;
     }
 }
 

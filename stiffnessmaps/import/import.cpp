@@ -31,10 +31,12 @@ void note_columns(const Columns& columns, const ImportOptions& options, MapSourc
     std::string used;
     for (std::size_t r = 0; r < kRoles; ++r) {
         const auto role = static_cast<Role>(r);
-        if (columns.has(role))
-            used += (used.empty() ? "" : ", ") + std::string(name_of(role)) + "=" + columns[role].name;
+        if (!columns.has(role)) continue;
+        const Column& column = columns[role];
+        used += (used.empty() ? "" : ", ") + std::string(name_of(role)) + "=" + column.name +
+                (column.unit.empty() ? "" : " in " + column.unit);
     }
-    add_choice(source, "columns", used, "usual names, with the units that they name",
+    add_choice(source, "columns", used, "usual names, with the units that they name; else mm, N and s",
                "--column, --length-unit, --depth-unit, --force-unit", !options.columns.empty());
 }
 
@@ -98,6 +100,7 @@ Map import_recording(const std::vector<fs::path>& files, const ImportOptions& op
     if (files.empty()) throw files::bad_input("maps import", "", "no file", "one or more");
     const bool arrays = options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
     Map map = arrays ? import_matrices(files, options, report) : import_tables(files, options, report);
+    map.nodules_known = false;  // a recording does not say
     check_layers(map, files.front().string());
     map.name = options.name.empty() ? files.front().stem().string() : options.name;
     map.source.from = files.front().filename().string();

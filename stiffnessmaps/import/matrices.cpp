@@ -223,8 +223,7 @@ void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport&
     if (options.quantity == Quantity::young && options.indenter == IndenterShape::cylinder)
         report.notes.push_back(
             "the force of a cylinder by pi/4 E* L d, whatever its radius, is a rough estimate: finite elements gave "
-            "half of it "
-            "for a cylinder of 10 mm radius and 20 mm length");
+            "half of it for a cylinder of 10 mm radius and 20 mm length");
 }
 
 std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack& normal,

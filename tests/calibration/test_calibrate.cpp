@@ -207,6 +207,7 @@ TEST_CASE("calibrate: points far off the curve are told, and whether they pull i
     options.robust = Robust::none;
     const auto warnings = calibrate(rows, options).warnings;
     CHECK_FALSE(any_with(warnings, "count little"));
+    CHECK(any_with(warnings, "count in full"));
 }
 
 TEST_CASE("calibrate: a stated level that the points cannot be of is refused") {

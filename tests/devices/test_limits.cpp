@@ -168,6 +168,24 @@ TEST_CASE("guard: an arm that is where it cannot be stops for good; one that is 
     CHECK(guard.fault == Fault::out_of_range);
 }
 
+TEST_CASE("guard: an arm that reports a fault of its own stops for good") {
+    const Limits limits;
+    double now_s = 0.0;
+    Guard guard = settled(limits, force_of(1.0), now_s);
+    ArmFeedback in;
+    in.faulty = 1.0;
+    ArmCommand command = force_of(1.0);
+    begin_tick(limits, now_s += 1e-3, true, &in, guard);
+    guard_arm(limits, command, guard);
+    CHECK(guard.fault == Fault::arm_error);
+    CHECK(command.force_N == 0.0);
+    for (int i = 0; i < 100; ++i) command = one_tick(limits, now_s += 1e-3, force_of(1.0), guard);
+    CHECK(command.force_N == 0.0);
+    release(guard);
+    for (int i = 0; i < 100; ++i) command = one_tick(limits, now_s += 1e-3, force_of(1.0), guard);
+    CHECK(command.force_N == 1.0);
+}
+
 TEST_CASE("guard: what the driver of the pins says counts") {
     CHECK(fault_of(PinState::proving) == Fault::none);
     CHECK(fault_of(PinState::driving) == Fault::none);

@@ -15,6 +15,7 @@
 #include "devices/pins.h"
 #include "devices/simulators/process.h"
 #include "files/text.h"
+#include "platform/serial_port.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -198,6 +199,21 @@ TEST_CASE("pins: nobody on the line is no answer, and nothing is driven") {
         CHECK(wait_for([&] { return driver.state() == PinState::no_answer; }));
     }
     ::close(slave);
+    ::close(master);
+}
+
+TEST_CASE("serial port: one that is open is not opened again, by this program or another, until it is let go") {
+    const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+    REQUIRE(master >= 0);
+    REQUIRE(::grantpt(master) == 0);
+    REQUIRE(::unlockpt(master) == 0);
+    const std::string port = ::ptsname(master);
+    {
+        const platform::SerialPort first(port, 115200);
+        CHECK_THROWS_WITH_AS(platform::SerialPort(port, 115200), (port + ": is used by another program").c_str(),
+                             std::runtime_error);
+    }
+    CHECK_NOTHROW(platform::SerialPort(port, 115200));
     ::close(master);
 }
 

@@ -128,6 +128,21 @@ TEST_CASE("case: CalculiX 2.20 stores the same energy in the same mesh") {
           1.2 * energy_J("hex8", regions));
 }
 
+TEST_CASE("case: the mesh is finest at the place that is named, also in a box that origin_mm moves") {
+    const auto centre_m = [](const char* origin, const char* centre, double at_mm) {
+        const std::string mesh =
+            std::string(R"({"box": {"size_mm": [100, 100, 50], "elements": [6, 6, 4], "origin_mm": )") + origin +
+            R"(, "grading": {"centre_mm": )" + centre + R"(, "finest_mm": 4}}})";
+        return *solved(case_text(mesh, "hex8-bbar", kClamped, press_at(at_mm, at_mm, 30), gel(2500, 0.45))).centre_m;
+    };
+    CHECK(centre_m("[-50, -50, 0]", "[0, 0]", 0) == close_to(centre_m("[0, 0, 0]", "[50, 50]", 50)).epsilon(1e-9));
+    CHECK(contains(said(case_text(
+                       R"({"box": {"size_mm": [100, 100, 50], "elements": [6, 6, 4], "origin_mm": [-50, -50, 0],
+                           "grading": {"centre_mm": [60, 0], "finest_mm": 4}}})",
+                       "hex8-bbar", kClamped, press_at(0, 0, 30), gel(2500, 0.45))),
+                   "found 60, expected a place in the box, -50 to 50"));
+}
+
 TEST_CASE("case: the slab of the paper, 100 mm wide, is 1.7 % softer than the layer") {
     const FemResult r = quarter(12, 10, 1.5, 100, 0.45);
     CHECK(*r.centre_m == close_to(0.77673e-3).epsilon(0.004));

@@ -60,6 +60,17 @@ TEST_CASE("stl: a box whose sides are voxel faces fills exactly those voxels, a 
     CHECK(info_of(read_part(folder / "ball.json")).volume_m3 == close_to(inscribed).epsilon(2e-3));
 }
 
+TEST_CASE("stl: a solid that reaches out of the part's space is cut off with a warning that names where") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "box.stl", binary_stl(box_triangles({0, 0, 0}, {10, 2, 2})));
+    write_text_atomically(folder / "part.json", json_text(stl_part("box.stl")));
+    CHECK(read_part(folder / "part.json").warnings.empty());
+    write_text_atomically(folder / "box.stl", binary_stl(box_triangles({0, 0, 0}, {14, 2, 2})));
+    const Part cut = read_part(folder / "part.json");
+    REQUIRE(cut.warnings.size() == 1);
+    CHECK(contains(cut.warnings[0], "reaches from 0 to 14 mm along x, and is cut off at 0 and 10 mm"));
+}
+
 TEST_CASE("stl: overlapping bodies are one, a cavity stays empty, moved ones move") {
     auto bodies = box_triangles({0, 0, 0}, {4, 2, 2});
     for (const auto& t : box_triangles({3, 0, 0}, {10, 2, 2})) bodies.push_back(t);

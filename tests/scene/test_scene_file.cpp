@@ -170,7 +170,7 @@ TEST_CASE("scene file: parts, every key, and wrong ones by name") {
     CHECK(contains(said(part(R"(, "view": "xz")")), "tissue.part.view"));
     CHECK(contains(said(part(R"(, "method": "elastica")")), "tissue.part.method"));
     CHECK(contains(said(part(R"(, "gesture": "shake")")), "tissue.part.gesture"));
-    CHECK(contains(said(R"({"name": "n", "tissue": {"part": {"designs": []}}})"), "one or two part files"));
+    CHECK(contains(said(R"({"name": "n", "tissue": {"part": {"designs": []}}})"), "an array of names of part files"));
     CHECK(contains(said(R"({"name": "n", "tissue": {"part": {"designs": ["button.json\u0000x"]}}})"), "zero byte"));
     CHECK(contains(said(R"({"name": "n", "tissue": {"part": {"designs": ["a.json", "b.json", "c.json"]}}})"),
                    "one or two"));

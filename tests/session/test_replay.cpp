@@ -5,6 +5,7 @@
 #include "app/scene_choices.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "scene/advance.h"
 #include "scene/mapping.h"
 #include "session/raster_trace.h"
 #include "session/replay.h"
@@ -283,6 +284,23 @@ TEST_CASE("replay: a trace made at another rate gives the same lags") {
         lag_m[i] = result_of(raster_trace(scene, plan, options), session).over[0].lag_m;
     }
     CHECK(lag_m[1] == close_to(lag_m[0]).epsilon(0.03));  // jitter and rounding differ
+}
+
+TEST_CASE("replay: the simulated pen touches the shipped parts where they answer") {
+    for (const char* name : {"button", "toothbrush", "toothbrush-pull"}) {
+        CAPTURE(name);
+        const Scene scene = load_scene(name);
+        const Plan plan = make_plan(scene);
+        RasterOptions options;
+        options.seconds = 2.0;
+        State state = start(scene, plan, {options.screen_width_px, options.screen_height_px});
+        double depth_m = 0.0;
+        for (const Sample& sample : raster_trace(scene, plan, options).samples) {
+            advance(scene, plan, sample, state);
+            depth_m = std::max(depth_m, state.contact.depth_m);
+        }
+        CHECK(depth_m > 0.1 * plan.greatest_depth_m);
+    }
 }
 
 TEST_CASE("replay: parts that were changed since the trace was recorded, or are others, are named") {

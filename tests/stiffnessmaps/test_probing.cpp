@@ -220,6 +220,13 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
     options.columns = {{"weight", "Load_mN"}};
     CHECK(contains(message_of([&] { imported(text, options); }),
                    "--column: found 'weight', expected one of t, point, x"));
+    std::string in_gf = text;
+    in_gf.replace(in_gf.find("Load_mN"), 7, "push_gf");
+    options.columns = {{"x", "Pos X [m]"}, {"y", "Pos Y [m]"}, {"fn", "push_gf"}};
+    CHECK(imported(in_gf, options).normal_N.back() == close_to(1200.0 * 9.80665e-3).epsilon(1e-5));
+    in_gf.replace(in_gf.find("push_gf"), 7, "push_oz");  // and not N
+    options.columns["fn"] = "push_oz";
+    CHECK(contains(message_of([&] { imported(in_gf, options); }), "expected one in N, mN, gf, kgf or lbf"));
     options.columns = {{"x", "Load_mN"}};
     CHECK(contains(message_of([&] { imported(text, options); }), "found the column 'Load_mN' as x, expected a length"));
 }

@@ -85,6 +85,26 @@ TEST_CASE("comparisons: forced choices of two conditions over people, corrected 
     CHECK(pairs[1].bootstrap->low < pairs[1].people.difference);
 }
 
+TEST_CASE("comparisons: people who did only one of two conditions change neither the interval nor which is higher") {
+    Observations seen;
+    for (const char* name : {"a", "b"}) index_of(name, seen.conditions);
+    for (int person = 0; person < 20; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        const int right = person < 10 ? 4 + person % 3 : 9 + person % 2;  // the second ten did a alone, and well
+        seen.choices.push_back({0, person, -1, right, 10});
+        if (person < 10) seen.choices.push_back({1, person, -1, right + 1 + (person > 2 ? 1 : 0), 10});
+    }
+    const std::vector<PairResult> pairs = compare_conditions(seen, Quantity::correct, {});
+    REQUIRE(pairs.size() == 1);
+    CHECK(pairs[0].people.left_out == 10);
+    CHECK(pairs[0].people.difference == close_to(-0.17));
+    CHECK(pairs[0].higher == "b");
+    REQUIRE(pairs[0].bootstrap);
+    CHECK(pairs[0].bootstrap->low < -0.17);
+    CHECK(pairs[0].bootstrap->high > -0.17);
+    CHECK(pairs[0].bootstrap->high < -0.1);
+}
+
 TEST_CASE("comparisons: Holm's correction leaves out what is not known") {
     const std::vector<double> corrected = holm_of_known({0.01, std::nan(""), 0.04});
     CHECK(corrected[0] == close_to(0.02));

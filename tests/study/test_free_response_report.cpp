@@ -86,6 +86,20 @@ TEST_CASE("free-response report: no lesion-free case leaves wafroc1 alone, and m
     CHECK(report_of(Observations()).is_null());
 }
 
+TEST_CASE("free-response report: a condition without any lesion is named, and keeps no other from the tests") {
+    Observations seen = observed(froc_set(froc_json("froc_small.json")));
+    std::erase_if(seen.judged, [](const JudgedCase& one) { return one.lesions.empty(); });
+    const Json before = report_of(seen);
+    const auto empty = static_cast<int>(seen.conditions.size());
+    seen.conditions.push_back("plain");
+    for (int j = 0; j < 3; ++j) seen.judged.push_back({empty, j, "plain", {}, {}, true});
+    const Json json = report_of(seen);
+    REQUIRE(json["tests"].size() == 1);
+    CHECK(json["tests"] == before["tests"]);
+    CHECK(json["participants_tested"] == 3);
+    CHECK(contains(json["notes"][0].get<std::string>(), "No case under plain has a lesion"));
+}
+
 TEST_CASE("free-response report: with one lesion type, in one case, the jackknife cannot be computed and says so") {
     Observations seen = observed(froc_set(froc_json("froc_small.json")));
     std::string with;

@@ -184,6 +184,26 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
     CHECK(read_text(folder / "study" / name) == three);
 }
 
+TEST_CASE("import bundles: a withdrawal that was noted at the desk keeps no later bundle of that person out") {
+    const TemporaryFolder folder;
+    const std::string name = "sub-01/beh/sub-01_task-ratings_beh.tsv";
+    const std::string one = "condition\titem\tvalue\npen\teffort\t3\n";
+    const std::string row = "n/a\twithdrawal\tdata may be used\n";
+    const auto bundle = [&](const char* file, const std::string& text) {
+        return write_bundle(folder / file, {{name, text}, {"study.json", study_file(kProtocolSha256, "x")}});
+    };
+    const auto a = bundle("a", one), b = bundle("b", one + "hand\teffort\t5\n");
+    import_bundles({a}, folder / "study");
+    write_text_atomically(folder / "study" / name, one + row);
+    CHECK(import_bundles({a}, folder / "study").grown.empty());
+    CHECK(import_bundles({b}, folder / "study").grown.size() == 1);
+    CHECK(read_text(folder / "study" / name) == one + row + "hand\teffort\t5\n");
+    CHECK(import_bundles({b, a}, folder / "study").grown.empty());
+    CHECK(read_text(folder / "study" / name) == one + row + "hand\teffort\t5\n");
+    const auto other = bundle("d", one + "hand\teffort\t6\n");
+    CHECK(contains(message_of([&] { import_bundles({other}, folder / "study"); }), "other answers than in"));
+}
+
 TEST_CASE("import bundles: single runs that a tablet took beside a study are passed over, and alone they are taken") {
     const TemporaryFolder folder;
     const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"},

@@ -95,6 +95,17 @@ TEST_CASE("staircase: the threshold comes near the level of which 75 % are right
     CHECK(sum / 20 < 0.31);
 }
 
+TEST_CASE("staircase: the threshold of softer comparisons is a difference below the reference") {
+    StaircaseTask task = up_down(1, 0.1, 5, 6);
+    task.comparisons_kPa = {8.0, 6.0, 4.0};
+    // right and wrong in turn: from the second reversal on, between 8 and 6 kPa
+    std::vector<StaircaseAnswer> answers;
+    for (int i = 0; i < 8; ++i) answers.push_back({i % 2, true, i % 2 == 1});
+    const StaircaseEstimate e = estimate_of(task, answers);
+    REQUIRE(e.threshold);
+    CHECK(percent_of(*e.threshold) == close_to(100.0 * (std::sqrt(0.8 * 0.6) - 1.0)));  // and not +44 %
+}
+
 TEST_CASE("staircase: QUEST+ asks for the least expected entropy, as written out in full") {
     const StaircaseTask task = quest(10);
     const std::vector<StaircaseAnswer> answers{{12, true, true}, {6, false, true}, {2, true, false}};

@@ -134,6 +134,15 @@ TEST_CASE("record: what a scale shows is typed in while the pen is held still") 
     CHECK(contains(read_text(session + "/forces-01.tsv"), "\t" + number_text(12 * 9.80665e-3) + "\t12\n"));
 }
 
+TEST_CASE("record: a pipe of levels that nobody writes into does not keep the session from its end") {
+    const TemporaryFolder folder;
+    const std::string fifo = (folder / "levels").string();
+    const Called none = shell("mkfifo " + fifo + "; " + kRecord + "-o " + (folder / "s").string() +
+                              " --sensor typed --seconds 0.5 --levels " + fifo + " </dev/null");
+    CHECK(none.status == 1);
+    CHECK(contains(none.err, "no point was recorded"));
+}
+
 TEST_CASE("record: a session without points is begun again without --resume") {
     const TemporaryFolder folder;
     const std::string record =

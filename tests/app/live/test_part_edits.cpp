@@ -110,6 +110,10 @@ TEST_CASE("part edits: a second session writes a file of its own, and the first 
     change_part(missed, desk.window, desk.gui, desk.app);
     CHECK(desk.app.notices.note == words::kNothingChanged);
     CHECK(operations_of(home.folder / "bar.json") == 1);
+    missed.material = "rubber";  // of the other design
+    change_part(missed, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.notices.note == "This design has no material rubber.");
+    CHECK(operations_of(home.folder / "bar.json") == 1);
 }
 
 TEST_CASE("part edits: an undone first change is out of its file too, and is not offered again") {
@@ -155,4 +159,29 @@ TEST_CASE(
     };
     CHECK(says("its shape is drawn only"));
     CHECK_FALSE(says("linear elastic"));
+}
+
+TEST_CASE(
+    "part edits: changes of another part whose file has the same name are not offered, nor those of an older design") {
+    const Home home;
+    {
+        Desk desk(home.scene());
+        wish(PartWish::Kind::edit, desk);
+    }
+    const auto offered = [](const std::string& scene) {
+        Desk desk(scene);
+        follow_parts(desk.window, desk.gui, desk.app);
+        return desk.app.view.part.earlier;
+    };
+    CHECK(offered(home.scene()));
+    const fs::path other = home.folder / "other";
+    fs::create_directory(other);
+    for (const char* file : {"bar.json", "scene.json"}) fs::copy_file(home.folder / file, other / file);
+    CHECK(offered((other / "scene.json").string()));  // the same part
+    std::string text = files::read_text(other / "bar.json");
+    text.replace(text.find("8.3e9"), 5, "4.0e9");
+    files::write_text_atomically(other / "bar.json", text);
+    CHECK_FALSE(offered((other / "scene.json").string()));
+    files::write_text_atomically(home.folder / "bar.json", text);  // mended since
+    CHECK_FALSE(offered(home.scene()));
 }

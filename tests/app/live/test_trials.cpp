@@ -224,6 +224,19 @@ TEST_CASE("live: results are kept unless the person does not want it, none of th
     desk.show_frame();
 }
 
+TEST_CASE("live: the guided start is done when the program is quit at its result, and not when in its middle") {
+    Desk desk("");
+    desk.keeper.busy = false;
+    begin_guided(desk.window, desk.gui, desk.app);
+    Wishes wishes;
+    wishes.quit = true;
+    carry_out(wishes, desk.window, desk.gui, desk.app);
+    CHECK_FALSE(desk.app.settings.guided_done);
+    act(Action::finish, desk.window, desk.app);
+    carry_out(wishes, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.settings.guided_done);
+}
+
 TEST_CASE("live: the guided start that is skipped leaves its trial as it is") {
     Desk desk("");
     desk.keeper.busy = false;

@@ -118,11 +118,45 @@ TEST_CASE("calibrate screen: points that make no profile say why, and the sessio
     REQUIRE(form.recording);
     calibration::drop_last_point(*form.recording);
     press(0.6, 2.5);
-    form.problem.clear();
     keep_profile(form);
     CHECK(form.problem.empty());
     CHECK_FALSE(form.recording);
     CHECK(std::filesystem::exists(folder / "palpa/profiles/pen.json"));
+}
+
+TEST_CASE("calibrate screen: the curve is the one that the profile gets, and why there is none stays on the screen") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_screen(Screen::calibrate, desk.window, desk.app);
+    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    form.recording = calibration::open_recording(arguments);
+    std::vector<calibration::CapturedPoint>& points = form.recording->session.points;
+    const auto frames_until_fitted = [&] {
+        for (int i = 0; i < 2000 && (form.guide.fitted != points.size() || form.guide.next_fit.valid()); ++i) {
+            frames(desk, 1);
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    };
+    for (int i = 1; i <= 8; ++i) points.push_back({0.1 * i, 0.1 * i, 0.1 * std::exp(2.8 * i / 8.0), i % 2});
+    frames_until_fitted();
+    REQUIRE(form.guide.fit);
+    const calibration::Calibration fitted = calibration::calibrate(calibration::rows_of(points), {});
+    for (const double level : {0.1, 0.25, 0.8}) {
+        CHECK(calibration::value_N(form.guide.fit->profile.curve, level) ==
+              close_to(calibration::value_N(fitted.profile.curve, level)));
+    }
+    points.push_back({0.9, 0.9, 117.0, 1});  // a slip
+    frames_until_fitted();
+    keep_profile(form);
+    frames(desk, 3);
+    REQUIRE(form.recording);
+    CHECK(form.guide.note.find("found forces up to 117") != std::string::npos);
+    calibration::drop_last_point(*form.recording);
+    frames(desk, 3);
+    CHECK(form.guide.note.empty());
 }
 
 TEST_CASE("calibrate screen: a load cell's newtons per count are asked for, and never assumed") {

@@ -24,6 +24,12 @@ void live_frames(Desk& desk, int count) {
     }
 }
 
+void open_code_page(const TemporaryFolder& folder, Desk& desk) {
+    desk.keeper.busy = false;
+    desk.app.doing =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+}
+
 void open_questions(const TemporaryFolder& folder, Desk& desk) {
     desk.keeper.busy = false;
     desk.app.doing =
@@ -37,8 +43,7 @@ void open_questions(const TemporaryFolder& folder, Desk& desk) {
 TEST_CASE("study screen: the code's field has the letters again after Escape") {
     const TemporaryFolder folder;
     Desk desk("");
-    desk.app.doing =
-        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    open_code_page(folder, desk);
     frames(desk, 5);
     CHECK(desk.app.view.study.code == "01");  // offered
     tap(desk.window, SDLK_ESCAPE);
@@ -52,9 +57,7 @@ TEST_CASE("study screen: the code's field has the letters again after Escape") {
 TEST_CASE("study screen: a second Enter after the screen before does not take the code that is only offered") {
     const TemporaryFolder folder;
     Desk desk("");
-    desk.keeper.busy = false;
-    desk.app.doing =
-        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    open_code_page(folder, desk);
     live_frames(desk, 3);
     tap(desk.window, SDLK_RETURN);
     live_frames(desk, 5);
@@ -128,14 +131,20 @@ TEST_CASE("study screen: Enter chooses the answer that the ring is on, and does 
     CHECK(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
     const std::vector<std::string>& answers = desk.app.view.study.answers;
     CHECK(answers.at(0) == "44");
-    CHECK(std::any_of(answers.begin() + 1, answers.end(), [](const std::string& answer) { return !answer.empty(); }));
+    const auto chosen = [](const std::string& answer) { return !answer.empty(); };
+    CHECK(std::any_of(answers.begin() + 1, answers.end(), chosen));
+    tap(desk.window, SDLK_RETURN);  // twice, as people press it
+    live_frames(desk, 6);
+    CHECK(std::any_of(answers.begin() + 1, answers.end(), chosen));
+    tap(desk.window, SDLK_SPACE);
+    live_frames(desk, 6);
+    CHECK(std::none_of(answers.begin() + 1, answers.end(), chosen));
 }
 
 TEST_CASE("study screen: Ctrl+Q closes the study from the code's field too, and types no letter") {
     const TemporaryFolder folder;
     Desk desk("");
-    desk.app.doing =
-        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    open_code_page(folder, desk);
     live_frames(desk, 5);
     REQUIRE_FALSE(desk.app.quit);
     tap(desk.window, SDLK_q, KMOD_LCTRL);

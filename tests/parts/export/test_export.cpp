@@ -222,4 +222,6 @@ TEST_CASE("export: names of files are plain, and each material has its own") {
     part.materials[1].name = "Shore A 60";
     part.materials[2].name = "";
     CHECK(file_names(part) == std::vector<std::string>{"Shore_A_60", "Shore_A_60_2", "_"});
+    part.materials[1].name = "shore a 60";  // some disks take both for one name
+    CHECK(file_names(part)[1] == "shore_a_60_2");
 }
