@@ -248,7 +248,7 @@ plot f using "per_step_us":(beam("paper")) with points pt 2 ps 1.3 lc rgb "#0000
      f using "per_step_us":(beam("euler-bernoulli")) with points pt 9 ps 1.4 lc rgb "#D55E00" title "Euler-Bernoulli", \
      f using "per_step_us":(beam("timoshenko")) with points pt 5 ps 1.2 lc rgb "#0072B2" title "Timoshenko", \
      f using "per_step_us":(beam("elastica")) with points pt 11 ps 1.4 lc rgb "#E69F00" title "elastica", \
-     f using "per_step_us":(beam("voxels")) with points pt 7 ps 1.3 lc rgb "#009E73" title "voxels, 8 to 24 cells across"
+     f using "per_step_us":(beam("voxels")) with points pt 7 ps 1.3 lc rgb "#009E73" title "voxels, a point each mesh"
 
 set title "A neck whose cells fit neither bands nor section\n{/*0.8 labels: size of the cells, mm; against 0.4 mm}"
 set xlabel "one answer (s)"

@@ -54,7 +54,7 @@ set xrange [* < 0.002 : 20 < *]
 set yrange [* < 0.04 : 200 < *]
 set key bottom left Left reverse
 do for [nu in "0.3 0.45 0.499"] {
-    set title "Slab, parabolic load, Poisson ratio " . nu . "\n{/*0.8 graded, 486 to 19,602 nodes; against Richardson's limit}"
+    set title "Slab, parabolic load, Poisson ratio " . nu . "\n{/*0.8 graded meshes, a point each; against Richardson's limit}"
     plot f using (offline(0)):(err("slab", "tet4 nu " . nu)) with linespoints ls 1 title "tetrahedra (tet4)", \
          f using (offline(0)):(err("slab", "hex8 nu " . nu)) with linespoints ls 2 title "hexahedra (hex8)", \
          f using (offline(0)):(err("slab", "hex8-bbar nu " . nu)) with linespoints ls 3 title "hexahedra, B-bar", \

@@ -171,7 +171,8 @@ bool ArmLink::take(std::span<const std::uint8_t> bytes, double arrival_s, ArmFee
     const Arrival arrival = track(packet.sequence, sequence_, health_.feedback, after_silence);
     if (arrival == Arrival::duplicate || arrival == Arrival::late) return false;
     ++health_.feedback.received;
-    health_.arm_rested += packet.state == 1;
+    driven_ = driven_ || packet.state == 0;
+    health_.arm_rested += driven_ && packet.state == 1;  // before the first command it rests as it should
     out.faulty = packet.state == 2 ? 1.0 : 0.0;
     out.time_s = arrival_s;
     out.device_time_s = packet.device_time_s;

@@ -76,7 +76,7 @@ struct LinkHealth {
     std::int64_t sent = 0;
     std::int64_t unsent = 0;      // that the system did not take
     SensorHealth feedback;        // received, lost, duplicate, reordered, malformed
-    std::int64_t arm_rested = 0;  // feedback that said so
+    std::int64_t arm_rested = 0;  // feedback that said so, after it had been driven
     TimeHistogram round_trip;
 };
 
@@ -102,6 +102,7 @@ class ArmLink {
     LinkHealth health_;
     Sequence sequence_;
     std::uint32_t sent_ = 0;
+    bool driven_ = false;  // the arm has said so
     double last_s_ = 0.0;  // arrival of the newest feedback
 };
 

@@ -40,7 +40,7 @@ std::vector<Line> lines_on_part(const scene::PartTissue& tissue) {
     const bool pulls = tissue.options.gesture == scene::PartGesture::pull;
     std::vector<Line> lines;
     for (const scene::PartDesign& design : tissue.designs) {
-        for (const double share : {0.5, 0.35, 0.65}) {
+        for (const double share : {0.5, 0.9, 0.1, 0.7, 0.3}) {
             const Eigen::Vector2d middle_m =
                 design.origin_m + across.cwiseProduct(share * design.size_m) + along.cwiseProduct(0.5 * design.size_m);
             const double half_m = 0.5 * along.dot(design.size_m);
@@ -128,7 +128,7 @@ platform::TraceInfo raster_info(const RasterOptions& options) {
 void draw_raster(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options,
                  const std::function<void(const platform::Sample&)>& take) {
     Pen pen(scene, plan, options, take);
-    const auto* part = std::get_if<scene::PartTissue>(&plan.tissue);
+    const scene::PartTissue* part = scene::parts_of(plan.tissue);
     const bool along = part != nullptr && scene::in_plane(*part);
     const std::vector<Line> lines = along ? lines_on_part(*part) : lines_over(plan);
     for (std::size_t i = 0; pen.t_s() < options.seconds; ++i) pen.draw(lines[i % lines.size()]);

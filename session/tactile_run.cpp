@@ -48,14 +48,23 @@ TactileSink::TactileSink(const tactile::TactilePlan& plan, const std::filesystem
 
 void TactileSink::take(const StepRecord& record, std::span<const double> reached_m) {
     const LoopCommand& command = record.command;
-    const auto n = static_cast<std::size_t>(command.pins);
     const bool rendered = record.fault == devices::Fault::none;
-    add(command, rendered, result.steps);
-    const std::span<const double> estimate(command.reached_m.data(), n);
-    if (rendered)
-        add({command.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, command.pressed, result.mismatch);
+    count_waiting(rendered);
+    const std::span<const double> estimate(command.reached_m.data(), static_cast<std::size_t>(command.pins));
+    const std::span<const double> reached = reached_m.empty() ? estimate : reached_m;
+    waiting_ = Waiting{command, {reached.begin(), reached.end()}};
+    if (!rendered) count_waiting(false);
     if (record.step_ns > 0) step.add_ns(record.step_ns);
     if (log_) log_->write(command);
+}
+
+void TactileSink::count_waiting(bool rendered) {
+    if (!waiting_) return;
+    const LoopCommand& command = waiting_->command;
+    add(command, rendered, result.steps);
+    const std::span<const double> wanted(command.wanted_m.data(), static_cast<std::size_t>(command.pins));
+    if (rendered) add(wanted, waiting_->reached_m, command.pressed, result.mismatch);
+    waiting_.reset();
 }
 
 void TactileSink::take_rows(RowRing& recorded) {
@@ -65,6 +74,7 @@ void TactileSink::take_rows(RowRing& recorded) {
 }
 
 void TactileSink::finish(const DeviceReport& loop) {
+    count_waiting(true);
     result.loop = loop;
     result.devices.late_steps = loop.late_periods;
     result.devices.real_time = loop.real_time;

@@ -152,7 +152,7 @@ void compare(const WantedHeights& wanted, const std::vector<tactile::TrueHeights
 void take_all(TactileThread& thread, TactileSink& sink, WantedHeights* wanted) {
     for (StepRecord record; thread.take(record);) {
         sink.take(record, {});
-        if (wanted != nullptr) keep(record, *wanted);
+        if (wanted != nullptr && record.fault == devices::Fault::none) keep(record, *wanted);
     }
     sink.take_rows(thread.loop().recorded);
 }
@@ -181,11 +181,11 @@ TactileResult run_live_press(std::shared_ptr<const tactile::TactilePlan> plan, c
     thread.end();
     take_all(thread, sink, keeps);
     take_devices(thread, *plan, sink);
+    sink.finish(thread.report());
     if (keeps != nullptr) {
         compare(wanted, tactile::read_heights(heights), sink.result.mismatch);
         sink.result.devices.reached_by = "simulator";
     }
-    sink.finish(thread.report());
     return std::move(sink.result);
 }
 

@@ -33,6 +33,15 @@ class TactileSink {
     std::int64_t lost_steps = 0;
 
   private:
+    // A step counts once the next one knows of no fault: the reading that trips the guard is that of a step whose command
+    // the guard replaced by rest.
+    struct Waiting {
+        tactile::LoopCommand command;
+        std::vector<double> reached_m;
+    };
+    void count_waiting(bool rendered);
+
+    std::optional<Waiting> waiting_;
     std::optional<tactile::StepLog> log_;
     std::optional<DeviceRowWriter> rows_;
 };

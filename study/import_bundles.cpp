@@ -17,6 +17,7 @@
 #include "study/names.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
+#include "study/withdrawal.h"
 
 namespace palpa::study {
 namespace {
@@ -47,14 +48,25 @@ bool begins_with(const std::string& text, const std::string& other) {
     return text.compare(0, other.size(), other) == 0;
 }
 
-constexpr std::string_view kWithdrawalRow = "\nn/a\twithdrawal\t";
+// The rows of a withdrawal, each with its end, and the text without them. A desk may note what a tablet does not know of, and
+// the other way round.
+struct SplitAnswers {
+    std::string others;
+    std::vector<std::string> withdrawals;
+};
 
-bool tells_withdrawal(const std::string& answers) { return answers.find(kWithdrawalRow) != std::string::npos; }
-
-std::string without_withdrawal(std::string answers) {
-    for (auto at = answers.find(kWithdrawalRow); at != std::string::npos; at = answers.find(kWithdrawalRow))
-        answers.erase(at + 1, answers.find('\n', at + 1) - at);  // with its end, or to the text's end
-    return answers;
+SplitAnswers split_answers(const std::string& text) {
+    SplitAnswers out;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+        const std::string row = text.substr(at, end - at);
+        if (withdrawal_in(row) != Withdrawal::none)
+            out.withdrawals.push_back(row);
+        else
+            out.others += row;
+        at = end;
+    }
+    return out;
 }
 
 bool same_study(const StudyIdentity& a, const StudyIdentity& b) {
@@ -135,14 +147,21 @@ class Plan {
             const fs::path path = directory_ / name;
             most.there = is_taken(name, most.from);
             const std::string there = most.there ? files::read_text(path) : "";
-            // a withdrawal that was noted here the tablet does not know of
-            const std::string sent = tells_withdrawal(most.text) ? there : without_withdrawal(there);
-            if (!begins_with(most.text, sent) && !begins_with(sent, most.text)) {
+            const SplitAnswers own = split_answers(there), sent = split_answers(most.text);
+            const bool goes_on = begins_with(most.text, there);
+            if (!begins_with(sent.others, own.others) && !begins_with(own.others, sent.others)) {
                 throw files::bad_input(most.from, name, "other answers than in " + path.string(),
                                        "the same ones, or more of them: nothing is overwritten");
             }
-            const bool more = !most.there || most.text.size() > sent.size();
-            if (more && most.there) most.text = there + most.text.substr(sent.size());
+            std::string added = sent.others.substr(std::min(sent.others.size(), own.others.size()));
+            for (const std::string& row : sent.withdrawals) {
+                // who took the data back anywhere took them back
+                const auto& noted = own.withdrawals;
+                const bool known = std::find(noted.begin(), noted.end(), row) != noted.end();
+                if (!known && (noted.empty() || withdrawal_in(row) == Withdrawal::takes_data)) added += row;
+            }
+            const bool more = !most.there || !added.empty();
+            if (more && !goes_on) most.text = there + added;
             if (!more) report.already_there.push_back(name);
             it = more ? std::next(it) : answers.erase(it);
         }

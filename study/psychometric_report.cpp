@@ -105,6 +105,31 @@ PsychometricPair pair_of(const PsychometricResult& a, const PsychometricResult& 
     return out;
 }
 
+// The people who answered under the other condition too.
+ConditionAnswers of_both(const ConditionAnswers& answers, const ConditionAnswers& other) {
+    ConditionAnswers out{answers.people, {}, {}};
+    for (std::size_t i = 0; i < out.people.size(); ++i) {
+        if (other.people[i].empty()) out.people[i].clear();
+    }
+    return out;
+}
+
+// As in the other tables of pairs: if anybody answered under both conditions, such people alone are compared.
+PsychometricPair compared(const PsychometricResult& a, const PsychometricResult& b, const ConditionAnswers& of_a,
+                          const ConditionAnswers& of_b, const Psychometrics& found, const BootstrapOptions& options) {
+    ConditionAnswers both_a = of_both(of_a, of_b), both_b = of_both(of_b, of_a);
+    const int both = people_in(both_a);
+    const int left_out = people_in(of_a) + people_in(of_b) - 2 * both;
+    const bool named = of_a.unnamed.empty() && of_b.unnamed.empty();
+    if (both == 0 || left_out == 0 || !named) return pair_of(a, b, of_a, of_b, found.greatest_lapse, options);
+    PsychometricResult from_a = result_of_all(both_a, found, options), from_b = result_of_all(both_b, found, options);
+    from_a.condition = a.condition;
+    from_b.condition = b.condition;
+    PsychometricPair out = pair_of(from_a, from_b, both_a, both_b, found.greatest_lapse, options);
+    out.left_out = left_out;
+    return out;
+}
+
 files::Json number(std::optional<double> value) { return value ? files::number_or_null(*value) : nullptr; }
 files::Json limits(const OpenInterval& ci) { return {number(ci.low), number(ci.high)}; }
 
@@ -181,11 +206,11 @@ ReportTable answer_table(const Psychometrics& found) {
 ReportTable jnd_pair_table(const Psychometrics& found) {
     ReportTable table{"psychometric_pairs",
                       "Just noticeable differences: ratios of all pairs of conditions",
-                      {"a", "b", "jnd_ratio", "low", "high", "intervals"},
+                      {"a", "b", "left_out", "jnd_ratio", "low", "high", "intervals"},
                       {}};
     for (const PsychometricPair& pair : found.pairs) {
-        table.rows.push_back({pair.a, pair.b, cell(pair.jnd_ratio, 4), cell(pair.ci.low, 4), cell(pair.ci.high, 4),
-                              name_of(pair.method)});
+        table.rows.push_back({pair.a, pair.b, std::to_string(pair.left_out), cell(pair.jnd_ratio, 4),
+                              cell(pair.ci.low, 4), cell(pair.ci.high, 4), name_of(pair.method)});
     }
     return table;
 }
@@ -233,8 +258,8 @@ Psychometrics psychometrics_of(const Observations& seen, double greatest_lapse, 
     for (std::size_t i = 0; i < of_all.size(); ++i) {
         for (std::size_t j = i + 1; j < of_all.size(); ++j) {
             if (axes[i] != axes[j]) continue;
-            found.pairs.push_back(pair_of(found.curves[of_all[i].first], found.curves[of_all[j].first],
-                                          *of_all[i].second, *of_all[j].second, greatest_lapse, options));
+            found.pairs.push_back(compared(found.curves[of_all[i].first], found.curves[of_all[j].first],
+                                           *of_all[i].second, *of_all[j].second, found, options));
         }
     }
     return found;
@@ -251,6 +276,7 @@ void add_psychometrics(const Psychometrics& found, files::Json& report) {
     for (const PsychometricPair& pair : found.pairs) {
         report["psychometric_pairs"].push_back({{"a", pair.a},
                                                 {"b", pair.b},
+                                                {"left_out", pair.left_out},
                                                 {"jnd_ratio", number(pair.jnd_ratio)},
                                                 {"ci", limits(pair.ci)},
                                                 {"intervals", name_of(pair.method)}});

@@ -29,6 +29,7 @@ struct PsychometricResult {
 // a's JND divided by b's, in units of x, of all answers of each condition.
 struct PsychometricPair {
     std::string a, b;
+    int left_out = 0;  // people with answers under one of both, where others have answers under both: not compared
     std::optional<double> jnd_ratio;
     OpenInterval ci;
     IntervalMethod method = IntervalMethod::profile;

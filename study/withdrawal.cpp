@@ -3,6 +3,7 @@
 #include <cassert>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -48,6 +49,15 @@ Withdrawal withdrawal_of(const std::filesystem::path& directory, const std::stri
                            files::shown(unclear->fields.size() == 3 ? unclear->fields[2] : unclear->text),
                            files::shown(kKeepsData) + " or " + files::shown(kTakesData) +
                                "; ask what was meant, and note it by palpa study withdraw");
+}
+
+Withdrawal withdrawal_in(std::string_view row) {
+    if (!row.empty() && row.back() == '\n') row.remove_suffix(1);
+    for (const auto& [how, text] :
+         {std::pair{Withdrawal::keeps_data, kKeepsData}, {Withdrawal::takes_data, kTakesData}}) {
+        if (row == std::string("n/a\t") + kWithdrawalItem + "\t" + text) return how;
+    }
+    return Withdrawal::none;
 }
 
 bool takes_data(const std::filesystem::path& directory, const std::string& code, std::vector<std::string>& notes) {

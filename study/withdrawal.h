@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/ratings.h"
@@ -19,6 +20,9 @@ enum class Withdrawal {
 // Throws InputError for a withdrawal that does not say whether the data may be used, as a power cut may leave it, unless
 // a later one does.
 Withdrawal withdrawal_of(const std::filesystem::path& directory, const std::string& code);
+
+// What a row of the answers' file tells, with or without its end; none if that is no withdrawal.
+Withdrawal withdrawal_in(std::string_view row);
 
 // Notes a withdrawal for the reader of a report. True for a participant who withdrew the data too.
 bool takes_data(const std::filesystem::path& directory, const std::string& code, std::vector<std::string>& notes);

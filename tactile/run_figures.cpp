@@ -34,6 +34,9 @@ files::Json warnings_json(const TactilePlan& plan, const DeviceFigures& devices)
     if (plan.arm) {
         const std::string delay = devices::delay_warning(plan.stiffness_N_per_m, kStep_s + devices.round_trip_p50_s);
         if (!delay.empty()) out.push_back(delay);
+        if (devices.arm_rested > 0)
+            out.push_back("the arm said " + std::to_string(devices.arm_rested) +
+                          " times that it was at rest since no command came: it rendered nothing then");
     }
     return out;
 }
@@ -60,6 +63,7 @@ void take_link(const devices::LinkHealth& link, DeviceFigures& figures) {
     figures.round_trip_p50_s = link.round_trip.quantile_s(0.5);
     figures.round_trip_p99_s = link.round_trip.quantile_s(0.99);
     figures.lost = link.feedback.lost;
+    figures.arm_rested = link.arm_rested;
 }
 
 files::Json figures_json(const TactilePlan& plan, const StepFigures& steps, const MismatchMeter& mismatch,

@@ -38,7 +38,8 @@ struct DeviceFigures {
     bool real_time = false;  // the loop had the scheduler's real-time priority
     double round_trip_p50_s = std::numeric_limits<double>::quiet_NaN();
     double round_trip_p99_s = std::numeric_limits<double>::quiet_NaN();
-    std::int64_t lost = 0;  // packets of the link
+    std::int64_t lost = 0;        // packets of the link
+    std::int64_t arm_rested = 0;  // as in LinkHealth
     devices::Guard guard;
     const char* reached_by = "nothing";  // estimate, or simulator: the simulated pins' true heights
 };

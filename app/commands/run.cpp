@@ -93,6 +93,16 @@ void check_no_window(const CLI::App& command, const RunOptions& options) {
     }
 }
 
+// The guided start is a practice trial on the default scene.
+void check_guided(const CLI::App& command) {
+    for (const char* name : {"SCENE", "--test", "--screen", "--replay"}) {
+        if (command.count(name) > 0)
+            throw files::InputError(
+                std::string(name) +
+                ": found with --guided, expected one of both: the guided start has a scene of its own");
+    }
+}
+
 void run_headless(const RunOptions& options) {
     if (options.trace.empty()) {
         throw files::InputError(
@@ -176,6 +186,7 @@ void add_run(CLI::App& app) {
             check_no_window(*command, *options);
             return run_headless(*options);
         }
+        if (options->guided) check_guided(*command);
         if (const auto result = run_live(*options)) print(*result, options->json);
     });
 }

@@ -143,14 +143,25 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
 void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide) {
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
-    // Enter takes it, the same number again too: while the pen is held down, the display gives a click of the mouse to nobody
-    if (guide.again) ImGui::SetKeyboardFocusHere();
+    // Enter takes it, the same number again too: while the pen is held down, the display gives a click of the mouse to nobody,
+    // so that the field takes the keys then, and the button waits
+    const bool presses = recording.session.touching;
+    if (presses && !guide.pressed && guide.note == words::kRecorded) guide.note.clear();  // of the press before
+    guide.pressed = presses;
+    constexpr int kFocusTakes = 4;  // frames; asking again meanwhile would drop letters
+    const bool lost = presses && !guide.typing && guide.frames_since_focus >= kFocusTakes;
+    ++guide.frames_since_focus;
+    if (guide.again || lost) {
+        ImGui::SetKeyboardFocusHere();
+        guide.frames_since_focus = 0;
+    }
     guide.again = false;
     push_touchable_frame(2.0f, gui);
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
     ImGui::PopStyleVar();
+    guide.typing = ImGui::IsItemActive();
     const bool entered = is_deactivated_by_enter();
-    if (!big_button(words::kRecord, words::kEnter, {}, gui) && !entered) return;
+    if (!big_button(words::kRecord, words::kEnter, {0.0f, kTarget_mm, !presses}, gui) && !entered) return;
     guide.again = entered;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
     guide.note = !good                                                                           ? words::kNotAForce

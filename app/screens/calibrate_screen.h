@@ -23,6 +23,9 @@ struct Guide {
     std::future<std::optional<calibration::Calibration>> next_fit;
     double shown_gf = 0.0;  // reading of the scale, as typed
     bool again = true;      // the field for the reading has the keys in the next frame
+    bool typing = false;    // the field has them now
+    int frames_since_focus = 0;
+    bool pressed = false;  // the pen was down in the last frame
     std::string note;
 };
 

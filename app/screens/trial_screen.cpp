@@ -141,7 +141,7 @@ void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
         wishes.action = platform::Action::undo;
     ImGui::SameLine();
     if (big_button(words::kFinish, keys ? words::kKeyFinish : "",
-                   {width_px, kTarget_mm, may, false, words::kHintFinish}, gui))
+                   {width_px, kTarget_mm, may, false, keys ? words::kHintFinish : words::kHintFinishStudy}, gui))
         wishes.action = platform::Action::finish;
 }
 

@@ -65,11 +65,20 @@ constexpr std::array<Unit, 14> kUnits{{{"mm", 1e-3, 'l'},
                                        {"ms", 1e-3, 't'},
                                        {"s", 1.0, 't'}}};
 
+bool is_blank(char c) { return c == ' ' || c == '"' || c == '\''; }
+
 // Letters that say a unit elsewhere, of which it is not known what they mean here (g of a scale: mass, force?). The last part
 // of a name that is one of them is no unit-less name, and is not taken for mm or N.
-constexpr std::array<std::string_view, 23> kOtherUnits{"g",    "kg", "mg", "lb",   "lbs", "oz",  "ozf", "dyn",
-                                                       "dyne", "kp", "Pa", "kPa",  "MPa", "bar", "psi", "V",
-                                                       "mV",   "nm", "dm", "inch", "ft",  "mil", "us"};
+constexpr std::array kOtherUnits{"g",   "kg",  "mg",  "gram", "grams", "lb",     "lbs", "pound", "pounds",
+                                 "oz",  "ozf", "dyn", "dyne", "cN",    "kp",     "Pa",  "kPa",   "MPa",
+                                 "bar", "psi", "V",   "mV",   "nm",    "dm",     "km",  "inch",  "inches",
+                                 "ft",  "yd",  "mil", "px",   "pixel", "pixels", "us",  "ns",    "min"};
+
+// A name whose last part stands in brackets states a unit, whatever it is.
+bool ends_in_brackets(std::string_view name) {
+    while (!name.empty() && is_blank(name.back())) name.remove_suffix(1);
+    return !name.empty() && (name.back() == ')' || name.back() == ']');
+}
 
 struct SplitName {
     std::string bare;            // lower case
@@ -81,8 +90,6 @@ std::string lower(std::string_view text) {
     for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return out;
 }
-
-bool is_blank(char c) { return c == ' ' || c == '"' || c == '\''; }
 
 // What follows the last blank, underscore or bracket of a name: its unit, if it has one. "" for a name of one part.
 std::string_view last_part(std::string_view name) {
@@ -130,7 +137,9 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
         return name.unit->to_SI;
     }
     const std::string_view last = last_part(column);
-    if (kind != ' ' && std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end()) {
+    const bool other =
+        ends_in_brackets(column) || std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end();
+    if (kind != ' ' && other) {
         throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
                                std::string("one in ") +
                                    (kind == 'f'   ? "N, mN, gf, kgf or lbf"

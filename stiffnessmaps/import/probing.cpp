@@ -310,10 +310,32 @@ void note_grid(const GridPlan& plan, bool on_grid, const ImportOptions& options,
                "--radius-mm", options.radius_m.has_value());
 }
 
+// The depths that all points have, if their steps differ: equal ones would lie between them. Empty if there are none such.
+std::vector<double> unequal_depths_of_all(const Probing& probing) {
+    constexpr double kSame_m = 1e-9, kStepDiffers_m = 1e-6;
+    constexpr std::size_t kMostLayers = 100;
+    std::vector<double> depths_m = probing.points.front().depth_m;
+    for (const ProbedPoint& p : probing.points) {
+        const auto same = [](double a, double b) { return std::abs(a - b) < kSame_m; };
+        if (!std::equal(depths_m.begin(), depths_m.end(), p.depth_m.begin(), p.depth_m.end(), same)) return {};
+    }
+    std::erase_if(depths_m, [](double depth_m) { return depth_m <= kSame_m; });
+    if (depths_m.empty() || depths_m.size() > kMostLayers) return {};
+    const double step_m = depths_m.back() / static_cast<double>(depths_m.size());
+    for (std::size_t k = 0; k < depths_m.size(); ++k) {
+        if (std::abs(depths_m[k] - step_m * static_cast<double>(k + 1)) > kStepDiffers_m) return depths_m;
+    }
+    return {};
+}
+
 std::vector<double> choose_depths(const Probing& probing, const ImportOptions& options, MapSource& source) {
     if (!options.depths_m.empty()) {
         add_choice(source, "depths_mm", choice_mm(options.depths_m), "", "--depths-mm", true);
         return options.depths_m;
+    }
+    if (const std::vector<double> shared_m = unequal_depths_of_all(probing); !shared_m.empty() && !options.layers) {
+        add_choice(source, "depths_mm", choice_mm(shared_m), "the depths of all points", "--depths-mm");
+        return shared_m;
     }
     std::vector<double> greatest_m;
     std::vector<double> steps;

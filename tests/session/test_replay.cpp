@@ -292,7 +292,7 @@ TEST_CASE("replay: the simulated pen touches the shipped parts where they answer
         const Scene scene = load_scene(name);
         const Plan plan = make_plan(scene);
         RasterOptions options;
-        options.seconds = 2.0;
+        options.seconds = 8.0;
         State state = start(scene, plan, {options.screen_width_px, options.screen_height_px});
         double depth_m = 0.0;
         for (const Sample& sample : raster_trace(scene, plan, options).samples) {

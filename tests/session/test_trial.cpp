@@ -1,3 +1,4 @@
+#include <cmath>
 #include <doctest/doctest.h>
 
 #include "app/scene_choices.h"
@@ -123,6 +124,25 @@ TEST_CASE("trial: pressed well but not marked is told apart from pressed too lig
     const Nodule& nodule = person.session.plan->nodules[1];
     person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.85);
     CHECK(debrief(*person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
+}
+
+TEST_CASE("trial: where nobody has named the nodules a mark is neither a hit nor false") {
+    Trainee person;
+    Plan plan = *person.session.plan;
+    plan.nodules.clear();
+    plan.nodules_known = false;
+    person.session.plan = std::make_shared<const Plan>(plan);
+    person.stroke(30.0, 30.0, 0.5);
+    person.act(Action::mark, 30.0, 30.0);
+    person.act(Action::finish);
+    const Debrief result = debrief(*person.session.plan, person.session.trial);
+    CHECK_FALSE(result.scored);
+    CHECK(result.score.false_positives == 0);
+    CHECK(std::isnan(result.score.ppv));
+    const Json json = trial_json(*person.session.plan, person.session.trial);
+    CHECK(json["ppv"].is_null());
+    REQUIRE(json["marks"].size() == 1);
+    CHECK(json["marks"][0]["kind"] == "not scored");
 }
 
 TEST_CASE("trial: a pen that lies on the screen without pressure does not press") {

@@ -54,6 +54,19 @@ TEST_CASE("map file: what is written reads back") {
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
+TEST_CASE("map file: a map that names no nodules because it does not know them says nothing of them") {
+    const TemporaryFolder folder;
+    Map map = small();
+    map.nodules.clear();
+    write_map(map, folder / "none.map");
+    CHECK(contains(read_text(folder / "none.map/map.json"), "\"nodules\": []"));
+    CHECK(read_map(folder / "none.map").nodules_known);
+    map.nodules_known = false;
+    write_map(map, folder / "unknown.map");
+    CHECK_FALSE(contains(read_text(folder / "unknown.map/map.json"), "nodules"));
+    CHECK_FALSE(read_map(folder / "unknown.map").nodules_known);
+}
+
 TEST_CASE("map file: choices, noise and the filled copy read back; a copy that differs is refused") {
     const TemporaryFolder folder;
     Map map = small();

@@ -226,6 +226,11 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
     CHECK(imported(in_gf, options).normal_N.back() == close_to(1200.0 * 9.80665e-3).epsilon(1e-5));
     in_gf.replace(in_gf.find("push_gf"), 7, "push_oz");  // and not N
     options.columns["fn"] = "push_oz";
+    std::string grams = in_gf;
+    grams.replace(grams.find("push_oz"), 7, "Force (grams)");
+    ImportOptions other = options;
+    other.columns["fn"] = "Force (grams)";
+    CHECK(contains(message_of([&] { imported(grams, other); }), "expected one in N, mN, gf, kgf or lbf"));
     CHECK(contains(message_of([&] { imported(in_gf, options); }), "expected one in N, mN, gf, kgf or lbf"));
     options.columns = {{"x", "Load_mN"}};
     CHECK(contains(message_of([&] { imported(text, options); }), "found the column 'Load_mN' as x, expected a length"));
@@ -261,6 +266,22 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
     ImportOptions keep;
     keep.remove_tilt = false;
     CHECK(choice_of(imported(text, keep), "tilt_removed_deg") == nullptr);
+}
+
+TEST_CASE("probing: unequal depths that all points have are kept, so that an exported map comes back as it was") {
+    std::string text = "x_mm,y_mm,depth_mm,fn_N\n";
+    for (int p = 0; p < 9; ++p) {
+        for (const double depth_mm : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0})
+            text += std::to_string(3 * (p % 3)) + "," + std::to_string(3 * (p / 3)) + "," + number_text(depth_mm) +
+                    "," + number_text(0.1 * depth_mm * depth_mm) + "\n";
+    }
+    ImportOptions options;
+    options.contact = ContactStart::given;
+    const Map map = imported(text, options);
+    REQUIRE(map.depths_m.size() == 5);
+    CHECK(map.depths_m[0] == close_to(0.5e-3));
+    CHECK(map.depths_m[3] == close_to(4e-3));
+    CHECK(map.normal_N[0] == close_to(0.025).epsilon(1e-6));
 }
 
 TEST_CASE("probing: a single wild force is left out by the stated rule, and kept when asked for") {

@@ -62,7 +62,7 @@ TEST_CASE("dataset: authors that are no list of texts are refused with their key
     const auto said = [](const char* dataset) { return message_of([&] { of_authors(dataset); }); };
     CHECK(contains(said(R"(, "dataset": {"authors": "Ada"})"),
                    "dataset.authors: found 'Ada', expected an array of texts"));
-    CHECK(contains(said(R"(, "dataset": {"authors": [1]})"), "dataset.authors: found 1, expected a text"));
+    CHECK(contains(said(R"(, "dataset": {"authors": [1]})"), "dataset.authors: found 1, expected texts"));
     CHECK(contains(said(R"(, "dataset": {"author": ["Ada"]})"), "author"));
     CHECK(contains(said(R"(, "analysis": {"participants": 0})"), "analysis.participants"));
 }

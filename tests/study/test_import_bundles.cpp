@@ -202,6 +202,16 @@ TEST_CASE("import bundles: a withdrawal that was noted at the desk keeps no late
     CHECK(read_text(folder / "study" / name) == one + row + "hand\teffort\t5\n");
     const auto other = bundle("d", one + "hand\teffort\t6\n");
     CHECK(contains(message_of([&] { import_bundles({other}, folder / "study"); }), "other answers than in"));
+    // said on the tablet too: the same adds nothing, and data that were taken back there are taken back here
+    const std::string two = one + "hand\teffort\t5\n";
+    const auto same = bundle("e", two + row);
+    CHECK(import_bundles({same}, folder / "study").grown.empty());
+    const std::string taken = "n/a\twithdrawal\tdata must not be used\n";
+    const auto back = bundle("f", two + taken);
+    CHECK(import_bundles({back}, folder / "study").grown.size() == 1);
+    CHECK(import_bundles({back}, folder / "study").grown.empty());
+    CHECK(read_text(folder / "study" / name) == one + row + "hand\teffort\t5\n" + taken);
+    CHECK(import_bundles({same}, folder / "study").grown.empty());  // and stay so
 }
 
 TEST_CASE("import bundles: single runs that a tablet took beside a study are passed over, and alone they are taken") {

@@ -70,6 +70,23 @@ TEST_CASE("psychometric report: all people and each person, by condition, and th
     CHECK(json["notes"].empty());
 }
 
+TEST_CASE("psychometric report: people who did one condition alone do not change the ratio of those who did both") {
+    constexpr std::uint64_t kSeed = 16;
+    CAPTURE(kSeed);
+    Observations seen = two_conditions(8, kSeed);
+    const Json both = report_json(make_report(seen, few_resamples()))["psychometric_pairs"][0];
+    CHECK(both["left_out"] == 0);
+    Random random(kSeed);
+    for (int person = 8; person < 16; ++person) {  // they feel far smaller differences
+        index_of("p" + std::to_string(person), seen.participants);
+        add_stiffer(draw_answers(paper_levels(), 80, {0.0, 0.05, 0.02}, random), 0, person, seen);
+    }
+    const Json more = report_json(make_report(seen, few_resamples()))["psychometric_pairs"][0];
+    CHECK(more["left_out"] == 8);
+    CHECK(more["jnd_ratio"].get<double>() == close_to(both["jnd_ratio"].get<double>()).epsilon(1e-9));
+    CHECK(more["ci"][0].get<double>() > 0.5 * both["ci"][0].get<double>());
+}
+
 TEST_CASE("psychometric report: nobody named, so the answers count as independent") {
     Observations seen;
     for (const char* name : {"off", "on"}) index_of(name, seen.conditions);

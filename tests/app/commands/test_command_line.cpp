@@ -181,6 +181,8 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
         CHECK(contains(called.err + called.out, word));
     };
     refused("run --headless", "--replay TRACE.tsv");
+    for (const char* both : {"--guided --test", "--guided delay", "--guided --screen maps"})
+        refused(std::string("run ") + both, "found with --guided");
     for (const char* ignored : {"--guided", "--screen maps", "--simulate", "--quit-after-s 3", "--record t.tsv"})
         refused("run --headless --replay " + kTrace + " " + ignored, "found with --headless, expected a window");
     for (const char* ignored : {"--width-px 300", "--height-px 300", "--left-handed"})

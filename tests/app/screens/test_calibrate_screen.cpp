@@ -93,6 +93,29 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     CHECK(form.recording->session.points[2].force_N == close_to(7.0 * calibration::kN_per_gf));
 }
 
+TEST_CASE("calibrate screen: while the pen presses the field takes the keys, also after another button was pressed") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_screen(Screen::calibrate, desk.window, desk.app);
+    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    form.recording = calibration::open_recording(arguments);
+    form.guide.again = false;
+    form.guide.note = words::kRecorded;  // of the press before
+    frames(desk, 5);
+    hold(0.02, *form.recording);
+    frames(desk, 8);
+    CHECK(form.guide.note.empty());
+    hold(0.02, *form.recording);
+    for (const char letter : std::string("110")) type(desk.window, letter);
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 12);
+    REQUIRE(form.recording->session.points.size() == 1);
+    CHECK(form.recording->session.points[0].force_N == close_to(110.0 * calibration::kN_per_gf));
+}
+
 TEST_CASE("calibrate screen: points that make no profile say why, and the session goes on") {
     const TemporaryFolder folder;
     ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
