@@ -22,8 +22,8 @@ struct IndenterContact {
     double seconds = 0.0;                      // that compliance and contact took
     double cells_across_radius = 0.0;          // sqrt(R depth) over the spacing of the nodes in contact
     double cells_under_radius = 0.0;           // sqrt(R depth) over the height of the cells under them
-    bool ends_on_nodes = false;                // of such a cylinder: nodes lie on its ends, where they count whole
     std::optional<double> cells_along_length;  // of a cylinder that has ends: its length over that spacing along it
+    bool ends_on_nodes = false;                // of such a cylinder: nodes lie on its ends, where they count whole
     bool settled = true;
     std::string why_not_settled;  // for people; empty if it settled
     bool over_edge = false;       // part of the tool is beside the tissue

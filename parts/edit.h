@@ -29,8 +29,8 @@ bool redo_edit(EditedPart& edited);
 // the same files from a folder of another name.
 files::Json moved_part(files::Json json, const std::filesystem::path& file, const std::filesystem::path& copy);
 
-// Writes the part as moved_part() says, whole or not at all, without the comments of the file it came from. Throws InputError as check_shape() does, and
-// std::runtime_error if the file cannot be written.
+// Writes the part as moved_part() says, whole or not at all, without the comments of the file it came from. Throws
+// InputError as check_shape() does, and std::runtime_error if the file cannot be written.
 void save_part(const EditedPart& edited, const std::filesystem::path& path);
 
 }  // namespace palpa::parts

@@ -160,7 +160,7 @@ class Plan {
                 const bool known = std::find(noted.begin(), noted.end(), row) != noted.end();
                 if (!known && (noted.empty() || withdrawal_in(row) == Withdrawal::takes_data)) added += row;
             }
-            const bool more = !most.there || !added.empty();
+            const bool more = !most.there || (goes_on ? most.text.size() > there.size() : !added.empty());
             if (more && !goes_on) most.text = there + added;
             if (!more) report.already_there.push_back(name);
             it = more ? std::next(it) : answers.erase(it);

@@ -44,8 +44,8 @@ struct DeviceFigures {
     const char* reached_by = "nothing";  // estimate, or simulator: the simulated pins' true heights
 };
 
-// Keys: pairing, schedule, leads, steps, late_steps, held_steps, relaxed_steps, max_force_N, mismatch_mm {rms, max}, mismatch_ms,
-// clipped_share, linear_range, step_us {p50, p99}, link {round_trip_ms {p50, p99}, lost}, faults [{fault, times}],
+// Keys: pairing, schedule, leads, steps, late_steps, held_steps, relaxed_steps, max_force_N, mismatch_mm {rms, max},
+// mismatch_ms, clipped_share, linear_range, step_us {p50, p99}, link {round_trip_ms {p50, p99}, lost}, faults [{fault, times}],
 // warnings and more (docs/tactile.md). Parts that the scene does not have are null.
 files::Json figures_json(const TactilePlan& plan, const StepFigures& steps, const MismatchMeter& mismatch,
                          const DeviceFigures& devices);

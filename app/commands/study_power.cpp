@@ -182,8 +182,7 @@ void add_study_power(CLI::App& study) {
         ->check(CLI::Range(0.0, 1.0));
     command->add_option("--reference", options.reference,
                         "condition whose scene the other tests show (default: the first of a primary comparison of "
-                        "conditions, else the "
-                        "protocol's first)");
+                        "conditions, else the protocol's first)");
     command->add_option("--noise", options.noises, "factors on the noise of the simulated eye (default 1)")
         ->delimiter(',')
         ->check(CLI::Range(0.05, 20.0));

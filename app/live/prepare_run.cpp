@@ -11,7 +11,6 @@
 #include "session/replay.h"
 
 namespace palpa::app {
-
 namespace {
 
 // A chosen profile that is gone, or cannot be read any more, is told of: another one answers in its place.

@@ -143,6 +143,22 @@ TEST_CASE("case: the mesh is finest at the place that is named, also in a box th
                    "found 60, expected a place in the box, -50 to 50"));
 }
 
+TEST_CASE("case: nodes on the ends of a cylinder are warned of, ends midway between nodes are not") {
+    const auto warned = [](const char* length_mm) {
+        const FemResult r =
+            solved(case_text(R"({"box": {"size_mm": [10, 10, 6], "elements": [20, 20, 8]}})", "hex8-bbar", kClamped,
+                             std::string(R"([{"indenter": {"shape": "cylinder", "radius_mm": 4, "length_mm": )") +
+                                 length_mm + R"(, "centre_mm": [5, 5], "depth_mm": 1}}])",
+                             gel(20000, 0.45)));
+        bool found = false;
+        for (const std::string& warning : contact_warnings(*r.contact))
+            found = found || contains(warning, "nodes lie on the tool's ends");
+        return found;
+    };
+    CHECK(warned("5"));
+    CHECK_FALSE(warned("5.5"));
+}
+
 TEST_CASE("case: the slab of the paper, 100 mm wide, is 1.7 % softer than the layer") {
     const FemResult r = quarter(12, 10, 1.5, 100, 0.45);
     CHECK(*r.centre_m == close_to(0.77673e-3).epsilon(0.004));

@@ -211,7 +211,11 @@ TEST_CASE("import bundles: a withdrawal that was noted at the desk keeps no late
     CHECK(import_bundles({back}, folder / "study").grown.size() == 1);
     CHECK(import_bundles({back}, folder / "study").grown.empty());
     CHECK(read_text(folder / "study" / name) == one + row + "hand\teffort\t5\n" + taken);
-    CHECK(import_bundles({same}, folder / "study").grown.empty());  // and stay so
+    CHECK(import_bundles({same}, folder / "study").grown.empty());              // and stay so
+    const std::string changed = one + row + "hand\teffort\t5\n" + taken + row;  // said anew, knowing what was said
+    const auto anew = bundle("g", changed);
+    CHECK(import_bundles({anew}, folder / "study").grown.size() == 1);
+    CHECK(read_text(folder / "study" / name) == changed);
 }
 
 TEST_CASE("import bundles: single runs that a tablet took beside a study are passed over, and alone they are taken") {

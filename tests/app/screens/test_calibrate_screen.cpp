@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <memory>
 #include <stdlib.h>
 #include <string>
 #include <thread>
@@ -39,17 +40,26 @@ void hold(double pressure, calibration::Recording& recording, double seconds = 2
     calibration::step(samples, recording);
 }
 
+std::shared_ptr<CalibrateForm> open_form(Desk& desk) {
+    open_screen(Screen::calibrate, desk.window, desk.app);
+    return std::get<Calibrating>(desk.app.doing).form;
+}
+
+// Begins a recording whose forces are typed in.
+void open_typed(const TemporaryFolder& folder, CalibrateForm& form) {
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    form.recording = calibration::open_recording(arguments);
+}
+
 }  // namespace
 
 TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and the next one can be typed at once") {
     const TemporaryFolder folder;
     Desk desk("");
-    open_screen(Screen::calibrate, desk.window, desk.app);
-    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
-    calibration::RecordArguments arguments;
-    arguments.folder = (folder / "c").string();
-    arguments.sensor = "typed";
-    form.recording = calibration::open_recording(arguments);
+    CalibrateForm& form = *open_form(desk);
+    open_typed(folder, form);
     form.guide.again = true;  // as if the field had been clicked
     frames(desk, 5);
     hold(0.02, *form.recording);
@@ -96,12 +106,8 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
 TEST_CASE("calibrate screen: while the pen presses the field takes the keys, also after another button was pressed") {
     const TemporaryFolder folder;
     Desk desk("");
-    open_screen(Screen::calibrate, desk.window, desk.app);
-    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
-    calibration::RecordArguments arguments;
-    arguments.folder = (folder / "c").string();
-    arguments.sensor = "typed";
-    form.recording = calibration::open_recording(arguments);
+    CalibrateForm& form = *open_form(desk);
+    open_typed(folder, form);
     form.guide.again = false;
     form.guide.note = words::kRecorded;  // of the press before
     frames(desk, 5);
@@ -121,10 +127,7 @@ TEST_CASE("calibrate screen: points that make no profile say why, and the sessio
     ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
     CalibrateForm form;
     std::snprintf(form.name, sizeof form.name, "pen");
-    calibration::RecordArguments arguments;
-    arguments.folder = (folder / "c").string();
-    arguments.sensor = "typed";
-    form.recording = calibration::open_recording(arguments);
+    open_typed(folder, form);
     const auto press = [&](double pressure, double force_N) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1200));
         hold(pressure, *form.recording, 1.0);
@@ -150,12 +153,8 @@ TEST_CASE("calibrate screen: points that make no profile say why, and the sessio
 TEST_CASE("calibrate screen: the curve is the one that the profile gets, and why there is none stays on the screen") {
     const TemporaryFolder folder;
     Desk desk("");
-    open_screen(Screen::calibrate, desk.window, desk.app);
-    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
-    calibration::RecordArguments arguments;
-    arguments.folder = (folder / "c").string();
-    arguments.sensor = "typed";
-    form.recording = calibration::open_recording(arguments);
+    CalibrateForm& form = *open_form(desk);
+    open_typed(folder, form);
     std::vector<calibration::CapturedPoint>& points = form.recording->session.points;
     const auto frames_until_fitted = [&] {
         for (int i = 0; i < 2000 && (form.guide.fitted != points.size() || form.guide.next_fit.valid()); ++i) {
@@ -202,12 +201,8 @@ TEST_CASE("calibrate screen: a load cell's newtons per count are asked for, and 
 TEST_CASE("calibrate screen: a mouse has no pressure, and is told so instead of being recorded") {
     const TemporaryFolder folder;
     Desk desk("");
-    open_screen(Screen::calibrate, desk.window, desk.app);
-    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
-    calibration::RecordArguments arguments;
-    arguments.folder = (folder / "c").string();
-    arguments.sensor = "typed";
-    form.recording = calibration::open_recording(arguments);
+    CalibrateForm& form = *open_form(desk);
+    open_typed(folder, form);
     Sample sample;
     sample.t_host_s = devices::steady_s();
     sample.tool = Tool::mouse;
