@@ -216,7 +216,7 @@ set border 3
 set xlabel "one tick of the loop (us, median)"
 set ylabel "rms error of the rendered force (% of the greatest; 10^{-4} and less at the edge)"
 set yrange [5e-5 : *]
-set xrange [200 < * : 20000 < *]
+set xrange [* < 200 : 20000 < *]
 set key outside right top
 do for [t in "1000 3333 10000"] { set arrow from t, graph 0 to t, graph 1 nohead lc rgb "#888888" dt 2 }
 set label "1,000 Hz" at 1000, graph 0.97 right rotate by 90 font ",9" offset -0.3,0
@@ -225,6 +225,7 @@ set label "100 Hz" at 10000, graph 0.97 right rotate by 90 font ",9" offset -0.3
 plot f using "per_step_us":(err("fidelity")) with points pt 7 ps 1.5 lc rgb "#0072B2" title "fidelity", \
      f using "per_step_us":(err("element and mesh")) with points pt 5 ps 1.5 lc rgb "#D55E00" title "element and mesh", \
      f using "per_step_us":(err("law")) with points pt 9 ps 1.5 lc rgb "#009E73" title "law", \
+     f using "per_step_us":(err("bearings")) with points pt 12 ps 1.5 lc rgb "#666666" title "bearings", \
      f using "per_step_us":(err("command")) with points pt 13 ps 1.7 lc rgb "#CC79A7" title "modulus off", \
      f using "per_step_us":(err("sensor")) with points pt 11 ps 1.5 lc rgb "#E69F00" title "sensor", \
      f using "per_step_us":(err("speed")) with points pt 4 ps 1.4 lc rgb "#56B4E9" title "speed", \

@@ -138,6 +138,7 @@ Difference difference_of(const std::vector<platform::Sample>& samples, const sce
     for (std::size_t i = 0; i < samples.size(); ++i) {
         scene::advance(scene, with, samples[i], a);
         scene::advance(scene, without, samples[i], b);
+        out.beyond = out.beyond || a.contact.saturated || b.contact.saturated;
         out.lag_m = std::max(out.lag_m, scene::seen_lag_m(a.avatar));
         const double apart_m = (a.avatar.lag_m + a.avatar.texture_m - b.avatar.lag_m - b.avatar.texture_m).norm();
         if (apart_m > out.apart_m) {
@@ -171,6 +172,7 @@ files::Json visibility_json(const std::vector<Seen>& seen, const VisibilityOptio
         json["nodules"].push_back({{"id", one.stroke.nodule},
                                    {"lag_mm", 1e3 * one.difference.lag_m},
                                    {"depth_change", one.difference.depth_share},
+                                   {"beyond_known_depth", one.difference.beyond},
                                    {"motion_px", one.motion_px},
                                    {"motion_arcmin", one.motion_arcmin},
                                    {"visible", is_seen(one.motion_arcmin, kIsSeen, options)}});
@@ -189,10 +191,14 @@ std::string visibility_table(const std::vector<Seen>& seen, const VisibilityOpti
     std::string out;
     for (const Seen& one : seen) {
         if (one.stroke.nodule.empty()) continue;
-        out += "nodule " + one.stroke.nodule + ": lag " + text(1e3 * one.difference.lag_m) + " mm, seen motion " +
-               text(one.motion_px) + " px, " + text(one.motion_arcmin) +
-               " arcmin: " + (is_seen(one.motion_arcmin, kIsSeen, options) ? "visible" : "not visible") +
-               "; depth changes by " + text(100.0 * one.difference.depth_share) + " %\n";
+        out +=
+            "nodule " + one.stroke.nodule + ": lag " + text(1e3 * one.difference.lag_m) + " mm, seen motion " +
+            text(one.motion_px) + " px, " + text(one.motion_arcmin) +
+            " arcmin: " + (is_seen(one.motion_arcmin, kIsSeen, options) ? "visible" : "not visible") +
+            "; depth changes by " + text(100.0 * one.difference.depth_share) + " %" +
+            (one.difference.beyond ? "; pressed beyond the known depth, where it stays: a smaller --force-N is needed"
+                                   : "") +
+            "\n";
     }
     if (const Seen* most = most_beside(seen)) {
         out += "beside the nodules: lag " + text(1e3 * greatest_lag_beside_m(seen)) + " mm, seen motion " +

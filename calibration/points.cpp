@@ -66,10 +66,10 @@ void check_unit(const CalibrationRows& rows) {
         const bool gf_here = factor > 50.0 && factor < 200.0;
         const bool N_here = factor < 1.0 / 50.0 && factor > 1.0 / 200.0;
         if (rows.level[order[i]] > 0.0 && (gf_here || N_here)) {
-            throw files::bad_input(rows.file, line_of(rows, order[i]) + ", force",
-                                   files::short_number(rows.force_N[order[i]]) + " N",
-                                   "about " + files::short_number(files::median(near)) +
-                                       " N as at levels beside it (gram-force and newtons mixed up?)");
+            throw files::bad_input(
+                rows.file, line_of(rows, order[i]) + ", force", files::short_number(rows.force_N[order[i]]) + " N",
+                "about " + files::short_number(files::median(near)) +
+                    " N as at levels beside it (gram-force and newtons mixed up? --any-force if it is right)");
         }
     }
 }

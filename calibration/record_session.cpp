@@ -117,7 +117,9 @@ bool capture(const RecordOptions& options, double now_s, RecordSession& session)
     if (!level_in(session.levels, from_s, level, level_moved) ||
         !force_in(session.forces, from_s, now_s, force_N, force_moved_N))
         return false;
-    if (!(level > options.range.lowest) || level_moved > options.level_tolerance * width(options)) return false;
+    if (!(level > options.range.lowest) || level > options.range.highest ||
+        level_moved > options.level_tolerance * width(options))
+        return false;
     if (force_moved_N > std::max(options.force_tolerance * std::abs(force_N), options.least_tolerance_N)) return false;
     if (force_N < -options.least_tolerance_N) ++session.below_zero;
     if (!(force_N > 0.0)) return false;

@@ -133,7 +133,8 @@ void ActuatorLine::Works::end() {
 }
 
 void ActuatorLine::Works::run() {
-    platform::set_real_time(true);  // where it is granted; else a busy computer may let the watchdogs fire
+    // where it is granted; else a busy computer may let the watchdogs fire
+    platform::set_real_time(true, platform::kGuardPriority);
     prove();
     for (double due_s = steady_s(); !ending.load();) {
         if (state == PinState::driving) {

@@ -119,7 +119,8 @@ void PinDriver::Works::drive_frame() {
 }
 
 void PinDriver::Works::run() {
-    platform::set_real_time(true);  // where it is granted; else a busy computer may let the boards' timeouts fire
+    // where it is granted; else a busy computer may let the boards' timeouts fire
+    platform::set_real_time(true, platform::kGuardPriority);
     prove();
     const double period_s = write_period_s(device);
     for (double due_s = steady_s(); !ending.load();) {

@@ -21,8 +21,12 @@ void hold_equation(Eigen::Index equation, double stiffness, BandMatrix& K) {
 }
 
 #ifdef PALPA_HAS_MUMPS
-int factor_in_place(BandMatrix& K) noexcept {
+void bring_back_threads() noexcept {
     openblas_set_num_threads(1);  // a second one gains nothing and spins
+}
+
+int factor_in_place(BandMatrix& K) noexcept {
+    bring_back_threads();
     const auto n = static_cast<int>(K.size());
     const int rows = K.band + 1;
     int info = 0;
@@ -40,6 +44,7 @@ void solve_in_place(const BandMatrix& factor, Eigen::Ref<Eigen::MatrixXd> block)
         dpbtrs_("L", &n, &factor.band, &columns, factor.values.data(), &rows, block.data(), &stride, &info, 1);
 }
 #else
+void bring_back_threads() noexcept {}
 int factor_in_place(BandMatrix&) noexcept { return -1; }
 void solve_in_place(const BandMatrix&, Eigen::Ref<Eigen::MatrixXd>) noexcept {}
 #endif

@@ -32,6 +32,11 @@ inline void add_block(int a, int b, const Eigen::Matrix3d& block, BandMatrix& K)
 // Makes an equation u = 0 of one row and column, with `stiffness` on the diagonal.
 void hold_equation(Eigen::Index equation, double stiffness, BandMatrix& K);
 
+// LAPACK brings its threads back when it is first used after a fork: then they would take over the real-time priority of
+// whoever uses it, and wait busily at that for a tenth of a second. So a thread without such a priority calls this before
+// it starts a loop that factors, and after the last fork.
+void bring_back_threads() noexcept;
+
 // Replaces the matrix by its Cholesky factor (dpbtrf, n band^2 operations). Returns 0, or the number (from 1) of the
 // first pivot that is not positive, or -1 in a build without LAPACK; then the values are of no use.
 int factor_in_place(BandMatrix& K) noexcept;

@@ -80,12 +80,17 @@ void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     out.answered = true;
     out.displacement_m = tip_m(beam, load, out.method);
     out.stiffness_N_per_m = load.force_N / out.displacement_m;
-    const double chord_deg = kDegrees * std::atan(out.displacement_m / beam.length_m);
+    const double bent_m = tip_m(beam, load, Method::euler_bernoulli);
+    const double shear = tip_m(beam, load, Method::timoshenko) / bent_m - 1.0;
+    if (out.method != Method::timoshenko && shear > kMostShear)
+        out.why_not = "shear, which it leaves out, adds " + files::short_number(100.0 * shear) + " %";
     if (!beam.doubt.empty()) out.why_not = beam.doubt;
     if (beam.length_m < kLeastSlenderness * beam.height_m)
         out.why_not = "length over height is " + files::short_number(beam.length_m / beam.height_m) + ", below 5";
-    if (chord_deg > kMostChord_deg && out.method != Method::elastica)
-        out.why_not = "the chord turns by " + files::short_number(chord_deg) + " degrees, above 10";
+    const double excess = bent_m / tip_m(beam, load, Method::elastica) - 1.0;
+    if (out.method != Method::elastica && excess > kMostBend)
+        out.why_not = "the beam bends too far: without large angles it goes " + files::short_number(100.0 * excess) +
+                      " % further than with them (elastica)";
     if (out.method == Method::paper) {
         out.why_not =
             "the spring takes a force per angle for a moment per angle: one piece has 2/3 of a beam's "

@@ -45,8 +45,11 @@ struct MethodResult {
 // cell that is no whole number of voxels.
 std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, const StiffnessOptions& options);
 
-// A beam's chord beyond which its linear answer is not taken to apply: at 10 degrees it is some 3 % off.
-inline constexpr double kMostChord_deg = 10.0;
+// How much further than the elastica a linear beam may go, and how much of a beam's answer the shear may be that it leaves
+// out, before its answer is not taken to apply. A uniform beam is 3 % off where its chord turns by 10 degrees; one with a soft
+// piece long before.
+inline constexpr double kMostBend = 0.03;
+inline constexpr double kMostShear = 0.05;
 // A cell's rotation beyond which the linear answer of cells is not taken to apply: the slope at the tip of a uniform beam
 // whose chord turns by 10 degrees.
 inline constexpr double kMostTurn_deg = 15.0;

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "files/input_error.h"
+#include "files/text.h"
 #include "scene/tissue.h"
 #include "session/tactile_run_sink.h"
 
@@ -42,7 +43,11 @@ std::int64_t steps_of(std::span<const devices::PressRow> press) {
 
 TactileSink::TactileSink(const tactile::TactilePlan& plan, const std::filesystem::path& log,
                          const std::filesystem::path& rows) {
-    if (!log.empty()) log_.emplace(log, plan);
+    if (!log.empty()) {
+        log_.emplace(log, plan);
+        faults_.emplace(log / "faults.tsv");
+        faults_->append("time_s\tfault\n");
+    }
     if (!rows.empty()) rows_.emplace(rows, field_names<tactile::LoopFeedback>());
 }
 
@@ -56,6 +61,15 @@ void TactileSink::take(const StepRecord& record, std::span<const double> reached
     if (!rendered) count_waiting(false);
     if (record.step_ns > 0) step.add_ns(record.step_ns);
     if (log_) log_->write(command);
+    if (faults_ && record.fault != fault_) log_fault(record);
+}
+
+// Into the file at once: it is what tells which rows of the other files were not rendered.
+void TactileSink::log_fault(const StepRecord& record) {
+    fault_ = record.fault;
+    const std::string_view what = fault_ == devices::Fault::none ? "none" : devices::text(fault_);
+    faults_->append(files::number_text(record.command.time_s) + '\t' + std::string(what) + '\n');
+    faults_->flush();
 }
 
 void TactileSink::count_waiting(bool rendered) {
@@ -82,7 +96,7 @@ void TactileSink::finish(const DeviceReport& loop) {
         result.devices.step_p50_us = 1e-3 * step.quantile_ns(0.5);
         result.devices.step_p99_us = 1e-3 * step.quantile_ns(0.99);
     }
-    if (log_) result.logged = log_->sync();
+    if (log_) result.logged = log_->sync() && faults_->sync();
     if (rows_) result.logged = rows_->sync() && result.logged;
     result.logged = result.logged && loop.lost_rows == 0 && lost_steps == 0;
 }

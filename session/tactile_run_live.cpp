@@ -204,6 +204,7 @@ namespace {
 
 void fill_moment(const tactile::TactilePlan& plan, const StepRecord& record, TactileMoment& out) {
     const tactile::LoopCommand& step = record.command;
+    const bool rendered = record.fault == devices::Fault::none;
     out.time_s = step.time_s;
     out.x_m = step.x_m;
     out.y_m = step.y_m;
@@ -212,19 +213,20 @@ void fill_moment(const tactile::TactilePlan& plan, const StepRecord& record, Tac
     out.sensor_N = record.has_sensor > 0.5 ? record.sensor_N : TactileMoment::kNone;
     out.wanted_m = step.wanted_m;
     out.reached_m = step.reached_m;
+    if (!rendered) out.reached_m.fill(plan.pin_rest_m);  // the step knows what was wanted, the guard lets the pins rest
     out.shape_scale = step.shape_scale;
     out.clipped = step.clipped;
     out.linearity = step.linearity;
     out.over_edge = step.over_edge;
     out.held = step.held;
-    out.fault = record.fault == devices::Fault::none ? "" : devices::text(record.fault).data();
+    out.fault = rendered ? "" : devices::text(record.fault).data();
     out.stopped = devices::latches(record.fault);
     out.lost = record.lost;
     const double delay_s = tactile::kStep_s + record.round_trip_s;
     out.stiffness_delay_N_s_per_m = plan.arm ? plan.stiffness_N_per_m * delay_s : 0.0;
     double sum_m2 = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(step.pins); ++i) {
-        const double off_m = step.reached_m[i] - step.wanted_m[i];
+        const double off_m = out.reached_m[i] - step.wanted_m[i];
         sum_m2 += off_m * off_m;
     }
     out.mismatch_m = step.pins > 0 ? std::sqrt(sum_m2 / step.pins) : TactileMoment::kNone;

@@ -21,7 +21,8 @@ struct StepRecord {
 
 class TactileSink {
   public:
-    // `log`: folder that exists; `rows`: TRACE.tactile.tsv; each empty for none. Throws as StepLog and DeviceRowWriter.
+    // `log`: folder that exists, which also gets faults.tsv, a row for each change (time_s, fault; "none" where it ends);
+    // `rows`: TRACE.tactile.tsv; each empty for none. Throws as StepLog and DeviceRowWriter.
     TactileSink(const tactile::TactilePlan& plan, const std::filesystem::path& log, const std::filesystem::path& rows);
     // reached_m: true heights of the pins; empty: the estimate counts.
     void take(const StepRecord& record, std::span<const double> reached_m);
@@ -40,9 +41,12 @@ class TactileSink {
         std::vector<double> reached_m;
     };
     void count_waiting(bool rendered);
+    void log_fault(const StepRecord& record);
 
     std::optional<Waiting> waiting_;
     std::optional<tactile::StepLog> log_;
+    std::optional<files::AppendFile> faults_;
+    devices::Fault fault_ = devices::Fault::none;
     std::optional<DeviceRowWriter> rows_;
 };
 

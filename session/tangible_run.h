@@ -45,12 +45,21 @@ struct TangibleRunOptions {
     std::function<bool()> ends{};  // asked while a live run goes on: true once a person wants its end
 };
 
+// What the guard of a real device did with the values for its drives (devices/rig_guard.h), one for each drive and command.
+struct GuardFigures {
+    std::int64_t commands = 0;
+    std::int64_t limited = 0;  // values out of a drive's range
+    std::int64_t slewed = 0;   // that wanted to change too fast
+    std::int64_t scaled = 0;   // commands that added up to too much force
+};
+
 struct TangibleResult {
     tangible::TickFigures ticks;
     tangible::ClockFigures clock;
     DeviceReport loop;
     devices::Fault guard = devices::Fault::none;  // why the guard of a real device has relaxed it
-    bool logged = true;                           // false: a log could not be written to its end
+    GuardFigures guarded;
+    bool logged = true;  // false: a log could not be written to its end
 };
 
 // In virtual time, on a plant: the same options give the same log, byte for byte.

@@ -9,6 +9,7 @@
 #include "devices/guard_process.h"
 #include "devices/spsc_ring.h"
 #include "files/clock.h"
+#include "mechanics/band_matrix.h"
 #include "session/tangible_body.h"
 #include "session/tangible_run_sink.h"
 
@@ -55,7 +56,7 @@ class TangibleRigPort {
 
     void stop() noexcept { guard_.stop(); }
     void release() noexcept { guard_.release(); }
-    devices::Fault fault() const noexcept { return report_.fault; }
+    const devices::RigReport& report() const noexcept { return report_; }
 
   private:
     const TangiblePlan& plan_;
@@ -84,6 +85,7 @@ class TangibleThread {
     TangibleThread& operator=(const TangibleThread&) = delete;
 
     void start() {
+        mechanics::bring_back_threads();  // the guard has been forked
         thread_ = std::thread([this] { run(); });
     }
     void end() {
@@ -91,7 +93,7 @@ class TangibleThread {
         if (thread_.joinable()) thread_.join();
     }
     bool finished() const { return finished_; }
-    devices::Fault guard_fault() const { return rig_ ? rig_->fault() : devices::Fault::none; }  // once it has ended
+    devices::RigReport guard() const { return rig_ ? rig_->report() : devices::RigReport{}; }  // once it has ended
     bool take(TickRecord& out) { return ring_->pop(out); }
     bool take(TangibleShape& out) { return shapes_->take(out); }
     DeviceLoop<TangibleLoop>& loop() { return *loop_; }
@@ -186,7 +188,9 @@ TangibleResult run_tangible_live(std::shared_ptr<const TangiblePlan> plan, const
     thread.end();
     take_all();
     sink.lost_ticks = thread.lost_ticks();
-    sink.result.guard = thread.guard_fault();
+    const devices::RigReport guard = thread.guard();
+    sink.result.guard = guard.fault;
+    sink.result.guarded = {guard.commands, guard.limited, guard.slewed, guard.scaled};
     sink.finish(thread.loop().report);
     return std::move(sink.result);
 }

@@ -4,6 +4,7 @@
 
 #include "files/text.h"
 #include "study/order_balance.h"
+#include "study/protocol_checks.h"
 
 namespace palpa::study {
 namespace {
@@ -24,7 +25,7 @@ std::string sheet_list(const std::vector<std::string>& items) {
 
 std::string sheet_limit(double limit_s) { return limit_s > 0.0 ? files::short_number(limit_s) + " s" : "none"; }
 
-bool any_task(const Protocol& protocol, bool pairs) {
+bool any_pairs(const Protocol& protocol, bool pairs) {
     for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
         if (compares(task_of(protocol, i)) == pairs) return true;
     }
@@ -91,7 +92,7 @@ std::string design_part(const Protocol& protocol) {
                                                         sheet_limit(protocol.practice_limit_s)) +
         sheet_row("break after",
                   protocol.break_every_trials > 0 ? std::to_string(protocol.break_every_trials) + " tests" : "no test");
-    if (any_task(protocol, false)) {
+    if (any_pairs(protocol, false)) {
         out += sheet_row("views", std::string(protocol.turn_maps ? "maps in four quarter turns" : "maps never turned") +
                                       (protocol.flip_maps ? ", also mirrored" : "")) +
                sheet_row("number of nodules told", protocol.count_told ? "yes" : "no");
@@ -124,7 +125,7 @@ std::string analysis_part(const Protocol& protocol) {
         sheet_row("all other comparisons",
                   "as the primary one, p corrected by Holm for all pairs of a table; exploratory") +
         sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
-    if (any_task(protocol, false)) {
+    if (any_pairs(protocol, false)) {
         out +=
             sheet_row(
                 "a mark is a hit",
@@ -138,9 +139,15 @@ std::string analysis_part(const Protocol& protocol) {
             sheet_row("nodules as a sample",
                       "mixed logistic model with people and nodules crossed, likelihood-ratio test");
     }
-    if (any_task(protocol, true))
+    if (any_task(protocol, TaskKind::choice))
         out += sheet_row("choices",
                          "share of right answers against one half; psychometric functions with lapses up to 0.05");
+    if (any_task(protocol, TaskKind::staircase))
+        out += sheet_row(
+            "staircases",
+            "threshold and JND of each person under each condition, 95 % credible interval; for groups "
+            "psychometric functions with lapses up to 0.05; no share of right answers, which follows from the "
+            "method");
     return out +
            sheet_row("participants who count",
                      "all who finished a test of both sides; dropouts replaced by `palpa study replace` are left out") +
@@ -156,7 +163,10 @@ std::string sample_part(const Protocol& protocol) {
     const std::string n = protocol.planned_participants > 0 ? std::to_string(protocol.planned_participants) : "";
     return "\n## Sample size\n\n| | |\n| --- | --- |\n" + sheet_row("planned participants", sheet_value(n)) +
            sheet_row("stopping rule", sheet_value(protocol.stopping_rule)) +
-           sheet_row("power", "`palpa study power`, with its output beside this sheet");
+           sheet_row("power",
+                     any_task(protocol, TaskKind::staircase)
+                         ? "`palpa study power` takes no staircases: how the number was found is to be written here"
+                         : "`palpa study power`, with its output beside this sheet");
 }
 
 // Tests in their order; equal ones in a row are counted.

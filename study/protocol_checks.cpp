@@ -6,7 +6,6 @@
 #include "files/text.h"
 
 namespace palpa::study {
-namespace {
 
 bool any_task(const Protocol& protocol, TaskKind task) {
     for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
@@ -14,6 +13,8 @@ bool any_task(const Protocol& protocol, TaskKind task) {
     }
     return false;
 }
+
+namespace {
 
 void check_tasks(const files::JsonReader& json, const Protocol& protocol) {
     for (const TaskKind task : {TaskKind::choice, TaskKind::staircase}) {

@@ -6,6 +6,9 @@
 
 namespace palpa::study {
 
+// Whether a condition has this task.
+bool any_task(const Protocol& protocol, TaskKind task);
+
 // Throws InputError for a key that this protocol would ignore, for a task without its settings, and for a condition in
 // no group. `json`: the protocol's file.
 void refuse_ignored_keys(const files::JsonReader& json, const Protocol& protocol);

@@ -236,7 +236,8 @@ std::string report_markdown(const Report& report) {
         "between = Welch's t of two groups; p_permutation = exact permutation of signs, or of groups (drawn above " +
         whole(kMostExactPeople) + " people). p_holm = corrected for all pairs of the table. " +
         (report.primary ? "The primary comparison is not corrected. " : "No protocol states a primary comparison. ") +
-        "Intervals at " + level + ": low, high = of the difference, by t; bootstrap = from " +
+        "Intervals at " + level +
+        " (the staircases' table has its own): low, high = of the difference, by t; bootstrap = from " +
         whole(report.options.bootstrap.resamples) + " resamples of participants (seed " +
         std::to_string(report.options.bootstrap.seed) +
         "); wilson = Wilson's score interval, which ignores clustering where people count more than once. Two kinds "

@@ -50,7 +50,7 @@ void visit_fields(const MarkRow& r, Visit&& visit) {
 
 template <class Visit>
 void visit_fields(const ChoiceRow& r, Visit&& visit) {
-    visit("onset", r.onset_s, "s", "since the run began");
+    visit("onset", r.onset_s, "s", "of the question, since the run began");
     visit("duration", r.duration_s, "s", "until the answer");
     visit("trial_type", r.trial_type, "", "choice");
     visit("block", r.block, "", "practice or test");

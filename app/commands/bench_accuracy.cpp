@@ -54,6 +54,7 @@ void run_accuracy(const AccuracyOptions& options, const Measurements& list, cons
     if (!options.folder.empty()) {
         files::check_output_folder(options.folder);
         make_folder(options.folder);
+        files::check_new(std::filesystem::path(options.folder) / (name + ".csv"));  // an earlier run took minutes too
     }
     const accuracy::Machine machine = accuracy::this_machine();
     const std::vector<accuracy::AccuracyRow> rows = accuracy::run_measurements(list);

@@ -60,10 +60,14 @@ void print_info(const PartOptions& options) {
 
 }  // namespace
 
-parts::Part read_part_aloud(const std::string& file) {
-    parts::Part part = parts::read_part(file);
+void say_warnings(const parts::Part& part) {
     for (const std::string& warning : part.warnings)
         std::fprintf(stderr, "palpa: warning: %s\n", files::printable(warning).c_str());
+}
+
+parts::Part read_part_aloud(const std::string& file) {
+    parts::Part part = parts::read_part(file);
+    say_warnings(part);
     return part;
 }
 

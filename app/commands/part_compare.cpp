@@ -80,11 +80,23 @@ void print_comparison(const parts::Part& a, const parts::Part& b, const parts::P
         std::printf(", and switches at %s times the force",
                     files::short_number(*comparison.switch_force_ratio).c_str());
     std::printf("\n  compliances differ by %s %%\n", files::short_number(100.0 * comparison.difference).c_str());
+    if (!comparison.a.stiffness.why_not.empty() || !comparison.b.stiffness.why_not.empty()) {
+        std::printf("    whether people tell them apart does not follow from a stiffness that does not apply\n");
+        return;
+    }
     for (const parts::WeberFraction& weber : parts::kWeberFractions) {
         std::printf("    %s the %s %% that people can just tell (%s)\n",
                     comparison.difference > weber.share ? "more than" : "within",
                     files::short_number(100.0 * weber.share).c_str(), weber.measured_with);
     }
+}
+
+// A button's spring and latch are keys of their file and no voxels.
+void doubt_button(const parts::Part& part, parts::ComparedDesign& design) {
+    if (!part.button) return;
+    std::string& why_not = design.stiffness.why_not;
+    why_not = "the spring of its button is left out, of which `palpa part button` tells" +
+              (why_not.empty() ? "" : "; " + why_not);
 }
 
 void compare(const CompareOptions& options) {
@@ -95,7 +107,9 @@ void compare(const CompareOptions& options) {
     const parts::Part a = read_part_aloud(options.a), b = read_part_aloud(options.b);
     parts::StiffnessOptions how{{method_named(options.method)}, {}, options.tolerance};
     if (options.cell_mm > 0.0) how.cell_m = 1e-3 * options.cell_mm;
-    const parts::PartComparison comparison = parts::compare_parts(a, b, options.load, how);
+    parts::PartComparison comparison = parts::compare_parts(a, b, options.load, how);
+    doubt_button(a, comparison.a);
+    doubt_button(b, comparison.b);
     if (options.json) {
         files::Json json{{"load", comparison.load}, {"force_N", comparison.force_N}, {"method", options.method}};
         json["a"] = design_json(a, comparison.a);

@@ -32,6 +32,7 @@ void edit_part(const EditOptions& options) {
                                    "fewer than the " + std::to_string(there) + " operations of shape");
         }
     }
+    say_warnings(edited.part);
     files::Json report{{"part", options.output}, {"undone", options.undo}};
     report["changed_voxels"] = files::Json::array();
     for (const std::string& operation : options.operations)

@@ -178,7 +178,9 @@ void add_study_analyse(CLI::App& study) {
     command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
     command->add_option("--rating-scale", options->scale, "lowest and highest rating of a table of rated marks")
         ->expected(2);
-    command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")
+    command
+        ->add_option("--level", options->report.bootstrap.level,
+                     "confidence level of all intervals but the staircases' (default 0.95)")
         ->check(CLI::Range(0.5, 0.9999));
     command
         ->add_option("--resamples", options->report.bootstrap.resamples,

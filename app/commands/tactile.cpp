@@ -150,9 +150,6 @@ void print_tactile(const files::Json& result) {
         std::printf("  pins off the wanted shape by %.3g mm (rms), %.3g mm at most, by %s\n",
                     result["mismatch_mm"]["rms"].get<double>(), result["mismatch_mm"]["max"].get<double>(),
                     result["reached_by"].get<std::string>().c_str());
-    if (const auto relaxed = result["relaxed_steps"].get<std::int64_t>(); relaxed > 0)
-        std::printf("  at rest by a fault in %lld steps, which count in no figure above\n",
-                    static_cast<long long>(relaxed));
     std::printf("  linear range: %s\n", result["linear_range"].get<std::string>().c_str());
     for (const auto& fault : result["faults"])
         std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),
@@ -178,11 +175,13 @@ void run_tactile(const TactileOptions& options) {
     files::Json json{{"scene", scene.name}, {"seed", options.seed}};
     json.update(tactile::figures_json(*plan, result.steps, result.mismatch, result.devices));
     json["devices"] = devices;
-    if (result.steps.relaxed_steps > 0)
-        std::fprintf(
-            stderr,
-            "palpa: warning: a fault kept the devices at rest in %lld of %lld steps; nothing was rendered then\n",
-            static_cast<long long>(result.steps.relaxed_steps), static_cast<long long>(result.steps.steps));
+    if (result.steps.relaxed_steps > 0) {
+        const std::string relaxed = "a fault kept the devices at rest in " +
+                                    std::to_string(result.steps.relaxed_steps) + " of " +
+                                    std::to_string(result.steps.steps) + " steps; nothing was rendered then";
+        std::fprintf(stderr, "palpa: warning: %s\n", relaxed.c_str());
+        json["warnings"].push_back(relaxed);
+    }
     if (!result.logged) throw std::runtime_error(options.log + ": the log could not be written to its end");
     if (!options.log.empty())
         files::write_text_atomically(fs::path(options.log) / "performance.json", files::json_text(json));

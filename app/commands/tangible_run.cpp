@@ -136,6 +136,22 @@ void name_guard(const std::string& why, files::Json& json) {
                  why.c_str());
 }
 
+// What a careful range or rate of `wires` takes away from a drive is in no other figure, nor in ticks.tsv.
+void name_limits(const session::GuardFigures& guard, files::Json& json) {
+    json["guard"] = {{"commands", guard.commands},
+                     {"limited_values", guard.limited},
+                     {"slewed_values", guard.slewed},
+                     {"scaled_commands", guard.scaled}};
+    constexpr std::int64_t kFew = 20;  // the first commands rise from rest as fast as they may
+    if (guard.limited == 0 && guard.scaled == 0 && guard.slewed * kFew <= guard.commands) return;
+    const std::string note =
+        "the drives got less than ticks.tsv says: of " + std::to_string(guard.commands) + " commands the guard held " +
+        std::to_string(guard.limited) + " values in the ranges of `wires`, slowed " + std::to_string(guard.slewed) +
+        " down to the rates, and scaled " + std::to_string(guard.scaled) + " commands down to the total force";
+    json["notes"].push_back(note);
+    std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
+}
+
 void note_less_depth(const session::Finger& finger, files::Json& json) {
     const double usual_m = tangible::PressMotion{}.depth_m;
     if (finger.motion.depth_m >= usual_m) return;
@@ -163,6 +179,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     if (!plant_name.empty() && arguments.press.empty()) note_less_depth(finger_of(arguments, {}, *plan), json);
     json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
+    if (plant_name.empty()) name_limits(result.guarded, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())

@@ -95,6 +95,16 @@ void follow_keeper(double now_s, App& app) {
     run.warnings = app.notices.problems;
 }
 
+// Ratings are of a condition whose trials have just been done. Studies that have begun go on as they were.
+void check_ratings(const study::Protocol& protocol, const std::filesystem::path& log) {
+    if (protocol.ratings.empty() || protocol.conditions.size() < 2 ||
+        protocol.trial_order == study::TrialOrder::blocked || std::filesystem::exists(log / "protocol.json"))
+        return;
+    throw files::bad_input(protocol.file.string(), "ratings",
+                           "questions about each condition, whose trials `trial_order` mixes",
+                           "no ratings, or trials in blocks");
+}
+
 // A participant must be able to read what is agreed to and asked. Throws InputError.
 void check_letters(const study::Protocol& protocol) {
     const std::string file = protocol.file.string();
@@ -113,6 +123,7 @@ void load_study(const RunOptions& options, App& app) {
     // on a tablet the screen refuses a code that has finished, since there is no command line to give another one
     const study::Protocol protocol = study::read_protocol(options.protocol);
     check_letters(protocol);
+    check_ratings(protocol, options.log);
     StudyRun run = open_study_run(protocol, options.log, tablet ? "" : options.participant);
     run.on_tablet = tablet;
     run.first_run = options.first_run;

@@ -69,7 +69,9 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
         app.asked.reset();
     }
     if (wishes.quit) app.quit = true;
-    if (wishes.understood) app.notices.problems.clear();
+    const StudyRun* study = study_of(app.doing);
+    const bool waits = study != nullptr && study->keeping_since_s;  // the problem is why, and says what can be done
+    if (wishes.understood && !waits) app.notices.problems.clear();
     if (asked_for.stop_devices) stop_devices(app);
     if (wishes.release_devices) release_devices(app);
     if (study_of(app.doing) != nullptr) follow_study(wishes.study, window, gui, app);

@@ -157,7 +157,7 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     }
     guide.again = false;
     push_touchable_frame(2.0f, gui);
-    ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
+    number_field(words::kGramForce, guide.shown_gf, "%.2f");
     ImGui::PopStyleVar();
     guide.typing = ImGui::IsItemActive();
     const bool entered = is_deactivated_by_enter();
@@ -181,13 +181,13 @@ void form_lines(Gui& gui, CalibrateForm& form) {
         field();
         ImGui::InputText(words::kAddress, form.address, sizeof form.address);
         field();
-        ImGui::InputDouble(words::kCountsPerN, &form.counts_per_N, 0.0, 0.0, "%.6g");
+        number_field(words::kCountsPerN, form.counts_per_N, "%.6g");
     }
     if (form.kind == 2) {
         field();
         ImGui::InputText(words::kPort, form.port, sizeof form.port);
         field();
-        ImGui::InputDouble(words::kNPerCount, &form.N_per_count, 0.0, 0.0, "%.6g");
+        number_field(words::kNPerCount, form.N_per_count, "%.6g");
     }
     field();
     ImGui::InputText(words::kName, form.name, sizeof form.name);

@@ -31,10 +31,15 @@ void trial_list(const Gui& gui, HistoryView& history) {
         ImGui::PushID(static_cast<int>(k));
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
-        const std::string text = words::filled(words::kHistoryLine, {local_time_text(trial.utc), mode_word(trial),
-                                                                     clock_text(trial.clock_s)}) +
-                                 "\n" + found_text(trial);
-        if (big_button(text.c_str(), "", {0.0f, 1.5f * kTarget_mm, true, k == history.chosen}, gui))
+        const float width_px = ImGui::GetContentRegionAvail().x - 4.0f * gui.mm();
+        const std::string text =
+            broken_at_spaces(words::filled(words::kHistoryLine,
+                                           {local_time_text(trial.utc), mode_word(trial), clock_text(trial.clock_s)}),
+                             width_px) +
+            "\n" + broken_at_spaces(found_text(trial), width_px);
+        const float text_mm = ImGui::CalcTextSize(text.c_str()).y / gui.mm();
+        if (big_button(text.c_str(), "", {0.0f, std::max(1.5f * kTarget_mm, text_mm + 2.0f), true, k == history.chosen},
+                       gui))
             choose_trial(k, history);
         if (k == history.chosen) ImGui::SetItemDefaultFocus();
         ImGui::PopStyleVar(2);
@@ -57,9 +62,10 @@ void left_column(const Shown& shown, const PanelArea& area, Gui& gui, HistoryVie
     begin_panel("history", area, gui);
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui))
         wishes.screen = Screen::trial;
-    const float below_px = (kTarget_mm + 26.0f) * gui.mm();
-    ImGui::BeginChild("trials", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
-                      ImGuiWindowFlags_NavFlattened);
+    const float there_px = ImGui::GetContentRegionAvail().y;
+    const float list_px =
+        std::max(there_px - (kTarget_mm + 26.0f) * gui.mm(), 0.55f * there_px);  // the rest may scroll
+    ImGui::BeginChild("trials", ImVec2(0.0f, list_px), false, ImGuiWindowFlags_NavFlattened);
     trial_list(gui, history);
     ImGui::EndChild();
     ImGui::BeginChild("below", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);

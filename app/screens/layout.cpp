@@ -8,9 +8,16 @@ namespace {
 
 constexpr float kColumn_mm = 64.0f;  // five targets of 9 mm side by side, and margins
 constexpr float kStrip_mm = 66.0f;
-constexpr float kLeastColumnHeight_mm = 92.0f;
-constexpr float kLeastStripWidth_mm = 84.0f;
+constexpr float kLeastColumnHeight_mm = 104.0f;  // 12 of them for messages, two lines and the bar that scrolls them
+constexpr float kLeastStripWidth_mm = 100.0f;    // 58 of them for the buttons, the others for force, depth and lag
 constexpr float kLeastTissue_mm = 30.0f;
+
+// Whether controls of this scale leave the tissue half of the window's shorter side.
+bool has_room(float width_px, float height_px, float mm) {
+    const Layout layout = layout_of(width_px, height_px, mm, false);
+    const float side_px = std::min(layout.tissue_px.width(), layout.tissue_px.height());
+    return layout.controls && side_px >= 0.5f * std::min(width_px, height_px);
+}
 
 }  // namespace
 
@@ -42,15 +49,14 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bo
 
 float larger_scale(float mm, float text, float width_px, float height_px) {
     float scale = mm * text;
-    while (scale > mm && !layout_of(width_px, height_px, scale, false).controls) scale *= 0.95f;
+    while (scale > mm && !has_room(width_px, height_px, scale)) scale *= 0.95f;
     return std::max(scale, mm);
 }
 
 float control_scale(double px_per_mm, float width_px, float height_px, double touch_px_per_mm) {
-    if (std::isfinite(px_per_mm)) return static_cast<float>(px_per_mm);
-    if (std::isfinite(touch_px_per_mm)) {
-        auto scale = static_cast<float>(touch_px_per_mm);
-        for (int i = 0; i < 10 && !layout_of(width_px, height_px, scale, false).controls; ++i) scale *= 0.93f;
+    if (const double known = std::isfinite(px_per_mm) ? px_per_mm : touch_px_per_mm; std::isfinite(known)) {
+        auto scale = static_cast<float>(known);
+        for (int i = 0; i < 60 && !has_room(width_px, height_px, scale); ++i) scale *= 0.95f;
         return scale;
     }
     constexpr float kDesk_px_per_mm = 96.0f / 25.4f;

@@ -100,7 +100,7 @@ void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wis
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     push_touchable_frame(2.0f, gui);
     double typed_px_per_mm = card_px_per_mm;
-    ImGui::InputDouble(words::kPxPerMm, &typed_px_per_mm, 0.0, 0.0, "%.3f");
+    number_field(words::kPxPerMm, typed_px_per_mm, "%.3f");
     ImGui::PopStyleVar();
     const bool good = typed_px_per_mm >= kLeast_px_per_mm && typed_px_per_mm <= kMost_px_per_mm;
     if (good) card_px_per_mm = typed_px_per_mm;  // else the card stays as it was

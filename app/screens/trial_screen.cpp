@@ -196,8 +196,9 @@ void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) 
     const float left_px = ImGui::GetCursorPosX();
     const float top_px = ImGui::GetCursorPosY();
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
-    ImGui::BeginChild("left", ImVec2(wide_px - right_px - gap_px, height_px), false, ImGuiWindowFlags_NavFlattened);
-    if (!hides_force(shown)) {
+    const float left_wide_px = wide_px - right_px - gap_px;
+    ImGui::BeginChild("left", ImVec2(left_wide_px, height_px), false, ImGuiWindowFlags_NavFlattened);
+    if (!hides_force(shown) && left_wide_px >= 58.0f * mm) {  // else the numbers, which say as much, get the room
         draw_force_bar(shown, std::max(16.0f * mm, height_px - 2.0f * mm), gui);
         ImGui::SameLine();
         ImGui::SetCursorPosX(30.0f * mm);

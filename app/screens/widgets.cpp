@@ -138,6 +138,15 @@ std::string broken_at_spaces(const std::string& text, float width_px) {
     return out;
 }
 
+void number_field(const char* name, double& value, const char* format) {
+    bool* active = ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID(name));
+    if (*active)
+        std::replace(ImGui::GetIO().InputQueueCharacters.begin(), ImGui::GetIO().InputQueueCharacters.end(),
+                     ImWchar{','}, ImWchar{'.'});
+    ImGui::InputDouble(name, &value, 0.0, 0.0, format);
+    *active = ImGui::IsItemActive();
+}
+
 void wrapped_text(const std::string& text) {
     const std::string lines = broken_at_spaces(text, ImGui::GetContentRegionAvail().x);
     ImGui::PushTextWrapPos(0.0f);  // a word that is longer than a line

@@ -693,6 +693,7 @@ inline constexpr const char* pageChecksumMismatch =
 inline constexpr const char* pageTrialsWait = "The desk is not reachable; trials wait here.";
 inline constexpr const char* pagePaired = "Paired.";
 inline constexpr const char* pageWrongCode = "The desk does not accept this code ({}).";
+inline constexpr const char* pageCodesLocked = "Too many wrong codes: the desk looks at no code for {} s.";
 inline constexpr const char* pageNotReachable = "The desk is not reachable.";
 inline constexpr const char* pageAtDesk = "at the desk";
 inline constexpr const char* pageInProgress = "in progress";

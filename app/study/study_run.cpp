@@ -364,9 +364,9 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
         if (!run.choices) {
             run.choices =
                 std::make_unique<study::ChoiceLog>(study::next_run(run.directory, run.code, "softer", run.first_run));
-            run.choices_began_s = now_s;
+            run.choices_began_s = run.step_began_s;
         }
-        row.onset_s = now_s - run.choices_began_s;
+        row.onset_s = run.step_began_s - run.choices_began_s;  // of the question
         if (!run.choices->write(row))
             throw std::runtime_error(run.directory.string() +
                                      ": the choice could not be written; the study has stopped");

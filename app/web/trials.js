@@ -153,6 +153,7 @@ const palpaTrials = (() => {
         const again = async () => { saveAgain(); if (!maySend() && toSend().length > 0) await askDesk(); send(); };
         setInterval(again, kAgain_ms);
         window.addEventListener('online', again);
+        window.addEventListener('beforeunload', (event) => { if (inDanger() > 0) event.preventDefault(); });
         send();
     };
 
@@ -254,7 +255,7 @@ const palpaTrials = (() => {
 
     // Returns false if the desk would take no other trial now either; all are tried again later.
     const sendOne = async (name) => {
-        const trial = await request('readonly', (store) => store.get(name));
+        const trial = unsaved.has(name) ? unsaved.get(name).trial : await request('readonly', (store) => store.get(name));
         if (!trial || trial.sent) return true;
         const answer = await fetch(`api/logs/${encodeURIComponent(name)}`, {
             method: 'PUT',
@@ -273,15 +274,22 @@ const palpaTrials = (() => {
             return kOfOneTrial.includes(answer.status);
         }
         // the desk has it: from here on only its name is kept
-        await request('readwrite', (store) => store.put({...trial, text: '', sent: true}));
-        note({...trial, sent: true});
+        const sent = {...trial, text: '', sent: true};
+        if (unsaved.has(name)) {
+            unsaved.get(name).trial = sent; // what the study goes on from still has no place
+            await save(sent, unsaved.get(name).files, false).catch(() => {});
+        } else {
+            await request('readwrite', (store) => store.put(sent));
+        }
+        note(sent);
         noteNames();
         return true;
     };
 
     // A trial that is going on is neither sent nor exported, since its files still grow; one that an earlier page left is.
     const isOver = (t) => t.finished || (!current.has(t.name) && !restoring.has(t.name));
-    const toSend = () => [...trials.values()].filter((t) => !t.sent && isOver(t));
+    const known = () => [...[...trials.values()].filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)];
+    const toSend = () => known().filter((t) => !t.sent && isOver(t));
 
     const send = async () => {
         if (sending || !maySend()) return;
@@ -305,7 +313,9 @@ const palpaTrials = (() => {
                                                     signal: AbortSignal.timeout(kPair_ms)});
             const token = answer.ok ? (await answer.json()).token : '';
             if (token) remember('palpa-token', token);
-            lastWord = token ? palpaWords.paired : palpaFilled(palpaWords.wrongCode, answer.status);
+            lastWord = token                 ? palpaWords.paired
+                     : answer.status === 429 ? palpaFilled(palpaWords.codesLocked, answer.headers.get('Retry-After') ?? '')
+                                             : palpaFilled(palpaWords.wrongCode, answer.status);
         } catch (error) {
             lastWord = palpaWords.notReachable;
         }
@@ -342,7 +352,7 @@ const palpaTrials = (() => {
             tell(palpaFilled(palpaWords.cannotRead, error.message));
             return [];
         })).filter((t) => !t.sent);
-        const all = [...kept.filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].filter(isOver);
+        const all = [...kept.filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].filter((t) => !t.sent && isOver(t));
         const studies = new Map(); // by study.json: its name, and its files
         for (const trial of all) {
             const {files} = JSON.parse(trial.text);
@@ -373,23 +383,23 @@ const palpaTrials = (() => {
         await saveAgain(); // there may be room now
     };
 
-    const inDanger = () => [...unsaved.values()].filter(({trial}) => !trial.exported).length;
+    const isInDanger = (trial) => unsaved.has(trial.name) && !trial.exported && !trial.sent;
+    const inDanger = () => known().filter(isInDanger).length;
     const words = (trial) => {
-        if (unsaved.has(trial.name) && !trial.exported) return palpaWords.exportIt;
+        if (isInDanger(trial)) return palpaWords.exportIt;
         if (trial.sent) return palpaWords.atDesk;
         if (!isOver(trial)) return palpaWords.inProgress;
         return (trial.finished ? palpaWords.waiting : palpaWords.interruptedWaiting) + (trial.exported ? palpaWords.exported : '');
     };
 
     const state = () => {
-        const waiting = toSend().length + unsaved.size;
+        const waiting = toSend().length;
         const paired = maySend();
         const lines = [palpaFilled(palpaWords.howMany, waiting, [...trials.values()].filter((t) => t.sent).length)];
         lines.push(recall('palpa-token') !== '' ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
         if (!persistent) lines.push(palpaWords.mayDelete);
         if (lastWord) lines.push(lastWord);
-        const kept = [...trials.values()].filter((t) => !unsaved.has(t.name));
-        return {lines, paired, waiting, trials: [...kept, ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: words(t)}))};
+        return {lines, paired, waiting, trials: known().map((t) => ({...t, words: words(t)}))};
     };
 
     const noteText = () => {

@@ -54,7 +54,7 @@ class SensorWatch {
 
   private:
     void run() {
-        platform::set_real_time(true);
+        platform::set_real_time(true, platform::kGuardPriority);
         std::vector<CountsReading> readings;
         readings.reserve(1024);
         while (!ending_.load()) {
@@ -94,7 +94,7 @@ class RigServer {
     }
 
     void run(const volatile int& ended) {
-        platform::set_real_time(true);
+        platform::set_real_time(true, platform::kGuardPriority);
         report();
         while (ended == 0 && guard_.count[static_cast<std::size_t>(Fault::parent_gone)] == 0) look();
         latch(rig_, Fault::parent_gone, guard_);

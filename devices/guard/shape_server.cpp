@@ -24,7 +24,7 @@ class ShapeServer {
     }
 
     void run(const volatile int& ended) {
-        platform::set_real_time(true);
+        platform::set_real_time(true, platform::kGuardPriority);
         report();
         while (ended == 0 && !parent_gone_) look();
         latch(Fault::parent_gone, guard_);

@@ -74,9 +74,13 @@ void tick(ArmPlant& plant) {
 void substep(ArmPlant& plant) {
     const ArmPlantParameters& arm = plant.arm;
     plant.time_s += kSubstep_s;
-    if (plant.hand_began_s < 0.0) return;  // the brake holds
-    plant.hand_N = hand_force_N(plant);
     plant.motor_N = motor_force_N(plant);
+    const bool led = plant.command.mode == static_cast<std::uint16_t>(ArmMode::position);
+    if (plant.hand_began_s < 0.0 || (plant.press.empty() && !led)) {  // the brake holds
+        plant.velocity_m_per_s = 0.0;
+        return;
+    }
+    plant.hand_N = hand_force_N(plant);
     const double ripple_N = arm.ripple_N * std::sin(2.0 * std::numbers::pi * plant.depth_m / arm.ripple_wavelength_m +
                                                     arm.ripple_phase_rad);
     const double force_N = plant.hand_N + arm.weight_kg * kGravity_m_per_s2 - plant.motor_N - ripple_N -

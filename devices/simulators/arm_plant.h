@@ -45,7 +45,7 @@ ArmPlantParameters arm_parameters(std::uint64_t seed);
 
 struct ArmPlant {
     ArmPlantParameters arm;
-    std::vector<PressRow> press;  // how the hand presses; empty: no hand
+    std::vector<PressRow> press;  // how the hand presses; empty: no hand, and the brake holds an arm that is not led
     std::mt19937_64 random;
 
     double time_s = 0.0;

@@ -86,7 +86,8 @@ int main(int argc, char** argv) {
     std::uint32_t first = 1;
     ArmSimulator sim;
     CLI::App app("A simulated force arm with hand and force sensor on loopback UDP");
-    app.add_option("--press", press, "PRESS.tsv that the hand follows; without it there is no hand");
+    app.add_option("--press", press,
+                   "PRESS.tsv that the hand follows; without it there is no hand, and the arm's brake holds");
     app.add_option("--seed", options.seed, "of the arm's parameters, each within 20 %; 0: none of them is changed");
     app.add_option("--port", port, "0: any that is free")->check(CLI::Range(0, 65535));
     app.add_option("--sensor-port", sensor_port, "0: any that is free")->check(CLI::Range(0, 65535));
@@ -142,6 +143,9 @@ int main(int argc, char** argv) {
         send_sensor(now_s, sim);
     }
     print_sent(line.sent);
-    if (sim.truth != nullptr) std::fclose(sim.truth);
-    return 0;
+    if (sim.truth == nullptr) return 0;
+    const bool failed = std::ferror(sim.truth) != 0;
+    if (std::fclose(sim.truth) == 0 && !failed) return 0;
+    std::fprintf(stderr, "arm_simulator: %s could not be written to its end\n", truth.c_str());
+    return 1;
 }

@@ -28,6 +28,10 @@ int main(int argc, char** argv) {
     app.add_option("--zero", zero, "counts without load")->capture_default_str();
     app.add_option("--garble", garble, "share of the lines with a broken character")->check(CLI::Range(0.0, 1.0));
     CLI11_PARSE(app, argc, argv);
+    if (!std::isfinite(counts_per_N)) {
+        std::fprintf(stderr, "load_cell_simulator: --counts-per-N: found %g, expected a finite number\n", counts_per_N);
+        return 2;
+    }
     Terminal terminal = plug_in(link);
     if (terminal.master < 0) {
         std::perror("load_cell_simulator");

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
     std::uint32_t status = 0;
     CLI::App app("A simulated ATI Net F/T on loopback UDP");
     add_stream_options(app, options);
-    app.add_option("--port", port, "0: any that is free");
+    app.add_option("--port", port, "0: any that is free")->check(CLI::Range(0, 65535));
     app.add_option("--first-sequence", first, "to see it wrap around");
     app.add_option("--counts-per-N", counts_per_N)->capture_default_str();
     app.add_option("--status", status, "of every record; 0 is fine");

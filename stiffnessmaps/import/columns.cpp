@@ -69,15 +69,15 @@ bool is_blank(char c) { return c == ' ' || c == '"' || c == '\''; }
 
 // Letters that say a unit elsewhere, of which it is not known what they mean here (g of a scale: mass, force?). The last part
 // of a name that is one of them is no unit-less name, and is not taken for mm or N.
-constexpr std::array kOtherUnits{"g",   "kg",  "mg",  "gram", "grams", "lb",     "lbs", "pound", "pounds",
-                                 "oz",  "ozf", "dyn", "dyne", "cN",    "kp",     "Pa",  "kPa",   "MPa",
-                                 "bar", "psi", "V",   "mV",   "nm",    "dm",     "km",  "inch",  "inches",
-                                 "ft",  "yd",  "mil", "px",   "pixel", "pixels", "us",  "ns",    "min"};
+constexpr std::array kOtherUnits{
+    "gr",     "volt", "volts", "count", "counts", "adc", "g",  "kg",  "mg",  "gram",  "grams",  "lb",  "lbs", "pound",
+    "pounds", "oz",   "ozf",   "dyn",   "dyne",   "cN",  "kp", "Pa",  "kPa", "MPa",   "bar",    "psi", "V",   "mV",
+    "nm",     "dm",   "km",    "inch",  "inches", "ft",  "yd", "mil", "px",  "pixel", "pixels", "us",  "ns",  "min"};
 
-// A name whose last part stands in brackets states a unit, whatever it is.
-bool ends_in_brackets(std::string_view name) {
+// A name whose last part stands in brackets or behind a slash states a unit, whatever it is.
+bool states_a_unit(std::string_view name) {
     while (!name.empty() && is_blank(name.back())) name.remove_suffix(1);
-    return !name.empty() && (name.back() == ')' || name.back() == ']');
+    return !name.empty() && (name.back() == ')' || name.back() == ']' || name.find('/') != std::string_view::npos);
 }
 
 struct SplitName {
@@ -91,10 +91,10 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-// What follows the last blank, underscore or bracket of a name: its unit, if it has one. "" for a name of one part.
+// What follows the last blank, underscore, bracket or slash of a name: its unit, if it has one. "" for a name of one part.
 std::string_view last_part(std::string_view name) {
     while (!name.empty() && (is_blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
-    const auto cut = name.find_last_of("_ ([");
+    const auto cut = name.find_last_of("_ ([/");
     return cut == std::string_view::npos || cut == 0 ? std::string_view() : name.substr(cut + 1);
 }
 
@@ -105,7 +105,7 @@ SplitName split_name(std::string_view name) {
     for (const Unit& unit : kUnits) {
         if (last != unit.name) continue;
         name = name.substr(0, static_cast<std::size_t>(last.data() - name.data()) - 1);
-        while (!name.empty() && (name.back() == ' ' || name.back() == '_')) name.remove_suffix(1);
+        while (!name.empty() && (name.back() == ' ' || name.back() == '_' || name.back() == '/')) name.remove_suffix(1);
         return {lower(name), &unit};
     }
     while (!name.empty() && (is_blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
@@ -138,11 +138,11 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
     }
     const std::string_view last = last_part(column);
     const bool other =
-        ends_in_brackets(column) || std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end();
+        states_a_unit(column) || std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end();
     if (kind != ' ' && other) {
         throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
                                std::string("one in ") +
-                                   (kind == 'f'   ? "N, mN, gf, kgf or lbf"
+                                   (kind == 'f'   ? "N, mN, uN, kN, gf, kgf or lbf"
                                     : kind == 'l' ? "mm, m, cm, um or in"
                                                   : "s or ms") +
                                    ", or an option that states its unit");

@@ -202,6 +202,21 @@ Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, 
     return fit;
 }
 
+// Two heights of the tool fit any power of the force: then noise would choose the surface.
+void check_heights(const std::string& file, const SurfaceSamples& samples, const Chosen& chosen) {
+    constexpr double kTight = 0.1;  // of the range
+    std::vector<double> z_m;
+    for (const std::size_t s : chosen.sample) z_m.push_back(samples.z_m[s]);
+    const auto [low, high] = std::minmax_element(z_m.begin(), z_m.end());
+    const double low_m = *low, high_m = *high, tight_m = kTight * (high_m - low_m);
+    const auto at_an_end = [&](double z) { return z - low_m <= tight_m || high_m - z <= tight_m; };
+    if (!std::all_of(z_m.begin(), z_m.end(), at_an_end)) return;
+    throw files::bad_input(
+        file, "", "a tool that presses at one or two heights, which fit any power of the force",
+        "three depths or more, to tell the surface; or its height by --surface-z-mm; or the depth of "
+        "each file by --at-depth-mm");
+}
+
 void measure_tilt(Surface& surface) {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -287,13 +302,15 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
             "of "
             "each file by --at-depth-mm");
     }
-    Fit best;
-    for (const double exponent : {1.0, 2.0 / 3.0}) {
-        Fit fit = fit_robustly(surface, samples, chosen, exponent, great_N);
-        if (fit.height_m.empty() || (!best.height_m.empty() && fit.deviation_m >= best.deviation_m)) continue;
-        best = std::move(fit);
-        surface.exponent = exponent;
-    }
+    check_heights(file, samples, chosen);
+    std::array<Fit, 2> fits;
+    constexpr std::array kExponents{1.0, 2.0 / 3.0};
+    for (std::size_t i = 0; i < fits.size(); ++i)
+        fits[i] = fit_robustly(surface, samples, chosen, kExponents[i], great_N);
+    const bool second =
+        !fits[1].height_m.empty() && (fits[0].height_m.empty() || fits[1].deviation_m < fits[0].deviation_m);
+    surface.exponent = kExponents[second ? 1 : 0];
+    Fit& best = fits[second ? 1 : 0];
     if (best.height_m.empty())
         throw files::bad_input(file, "", "no surface through the samples", "places that extend along x and y");
     surface.height_m = std::move(best.height_m);

@@ -58,6 +58,16 @@ TEST_CASE("record: a point where both signals hold still, one for each place, an
     CHECK(session.points[4].phase == PressPhase::release);
 }
 
+TEST_CASE("record: levels outside the range give no points") {
+    RecordOptions options;
+    options.range = {0.3, 0.7};
+    RecordSession session;
+    std::mt19937_64 random(1);
+    press(options, {0.2, 0.5, 0.9}, 10.0, 1.0, random, session);
+    REQUIRE(session.points.size() == 1);
+    CHECK(session.points[0].level == close_to(0.5));
+}
+
 TEST_CASE("record: nothing is captured without a sensor, without touch, or on the move") {
     RecordOptions options;
     RecordSession session;

@@ -264,6 +264,23 @@ TEST_CASE("simulated arm: without a command for 100 ms its motor rests, whoever 
     CHECK(feedback_packet(plant).state == 0);
 }
 
+TEST_CASE("simulated arm: where nobody holds it its brake does, but for where it is led") {
+    ArmPlant plant = make_arm_plant(arm_parameters(0), {}, 1);
+    for (int k = 0; k < 20; ++k) {
+        command(push(1.0), plant);
+        advance(0.05, plant);
+    }
+    CHECK(plant.depth_m == 0.0);
+    ArmCommand lead;
+    lead.mode = static_cast<double>(ArmMode::position);
+    lead.depth_m = 5e-3;
+    for (int k = 0; k < 20; ++k) {
+        command(lead, plant);
+        advance(0.05, plant);
+    }
+    CHECK(plant.depth_m == close_to(5e-3).epsilon(0.15));
+}
+
 TEST_CASE("simulated arm: it sticks below its static friction, and slides above it as the friction's law says") {
     ArmPlantParameters arm = arm_parameters(0);
     arm.weight_kg = 0.0;

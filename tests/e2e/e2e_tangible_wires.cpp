@@ -48,12 +48,13 @@ struct PlantRow {
 
 // The plant program with the strip, and a scene on it.
 struct Bench {
-    explicit Bench(std::vector<std::string> more = {}) {
+    explicit Bench(std::vector<std::string> more = {},
+                   const std::string& device = PALPA_SOURCE_DIR "/assets/devices/strip.json") {
         files::write_text_atomically(folder / "scene.json",
                                      R"({"name": "spring", "tissue": {"force_curve": {"stiffness_N_per_mm": 0.1,
-            "greatest_depth_mm": 8}}, "mapping": {"kind": "direct"}, "tangible": {"device": "strip.json")" +
-                                         std::string(kFidelity) + "}}");
-        std::vector<std::string> arguments{PALPA_SOURCE_DIR "/assets/devices/strip.json",
+            "greatest_depth_mm": 8}}, "mapping": {"kind": "direct"}, "tangible": {"device": ")" +
+                                         device + "\"" + kFidelity + "}}");
+        std::vector<std::string> arguments{device,
                                            "--nodes",
                                            "6",
                                            "--pause-s",
@@ -175,4 +176,21 @@ TEST_CASE("plant: unplugged, garbage, SIGKILL: relaxed each time, and never a co
         end(program);
     }
     CHECK(bench.out_of_range() == "out_of_range 0");
+}
+
+TEST_CASE("plant: what a range of the wires takes away from the drives is counted and told") {
+    const TemporaryFolder folder;
+    std::string device = files::read_text(PALPA_SOURCE_DIR "/assets/devices/strip.json");
+    for (const std::string range = R"("range_N": [0, 5.5])"; device.find(range) != std::string::npos;)
+        device.replace(device.find(range), range.size(), R"("range_N": [0, 0.3])");
+    files::write_text_atomically(folder / "careful.json", device);
+    Bench bench({}, (folder / "careful.json").string());
+    int status = -1;
+    ::waitpid(bench.start(2), &status, 0);
+    CHECK(status == 0);
+    const files::Json report = files::read_json(bench.folder / "out.json");
+    MESSAGE("report ", report.dump());
+    CHECK(report["guard"]["limited_values"].get<int>() > 0);  // at rest the strip is held by 0.56 N
+    CHECK(report["guard"]["limited_values"].get<int>() <= 2 * report["guard"]["commands"].get<int>());
+    CHECK(report["notes"].dump().find("the drives got less than ticks.tsv says") != std::string::npos);
 }

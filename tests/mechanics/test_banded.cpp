@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <iterator>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 #include "mechanics/banded.h"
@@ -85,4 +89,23 @@ TEST_CASE("banded: what is not positive definite is a return value, or an error 
     SparseCholesky other(SolverKind::eigen);
     other.analyse(A);
     CHECK_FALSE(other.try_factor(A));
+}
+
+TEST_CASE("banded: after a fork no factorisation starts a thread, which would spin at the loop's real-time priority") {
+    if (!banded_built_in()) return;
+    const auto threads = [] {
+        return std::distance(std::filesystem::directory_iterator("/proc/self/task"),
+                             std::filesystem::directory_iterator());
+    };
+    BandMatrix K = band_matrix(300, 20);
+    K.values.row(0).setConstant(4.0);
+    REQUIRE(factor_in_place(K) == 0);
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(0);
+    REQUIRE(child > 0);
+    ::waitpid(child, nullptr, 0);
+    bring_back_threads();
+    const auto before = threads();
+    CHECK(factor_in_place(K) == 0);
+    CHECK(threads() == before);
 }

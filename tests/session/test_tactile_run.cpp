@@ -234,6 +234,26 @@ TEST_CASE("tactile run: missing ports are named") {
     CHECK(missing_ports(*TactileScene(R"({"display": {}})").scene.tactile).empty());
 }
 
+TEST_CASE("tactile run: when a fault began and ended stands in a file of its own") {
+    const TactileScene slab;
+    const TemporaryFolder folder;
+    const auto plan = slab.tactile_plan();
+    {
+        TactileSink sink(*plan, folder.path(), {});
+        StepRecord record;
+        for (int k = 0; k < 100; ++k) {
+            record.command.time_s = 1e-3 * k;
+            record.fault = k >= 20 && k < 60 ? devices::Fault::stopped : devices::Fault::none;
+            sink.take(record, {});
+        }
+        sink.finish({});
+        CHECK(sink.result.logged);
+        CHECK(sink.result.steps.relaxed_steps == 41);  // and the one before, whose command the guard had replaced
+    }
+    const std::string began = "time_s\tfault\n0.02\t" + std::string(devices::text(devices::Fault::stopped));
+    CHECK(file_text(folder / "faults.tsv") == began + "\n0.06\tnone\n");
+}
+
 TEST_CASE("tactile run: a step with its guard allocates nothing") {
     const TactileScene slab;
     const auto loop = make_tactile_loop(slab.tactile_plan());

@@ -230,8 +230,22 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
     grams.replace(grams.find("push_oz"), 7, "Force (grams)");
     ImportOptions other = options;
     other.columns["fn"] = "Force (grams)";
-    CHECK(contains(message_of([&] { imported(grams, other); }), "expected one in N, mN, gf, kgf or lbf"));
-    CHECK(contains(message_of([&] { imported(in_gf, options); }), "expected one in N, mN, gf, kgf or lbf"));
+    CHECK(contains(message_of([&] { imported(grams, other); }), "expected one in N, mN, uN, kN, gf, kgf or lbf"));
+    for (const auto& [name, newtons] : {std::pair{"Fz/mN", 1.2}, {"Fz / mN", 1.2}, {"Fz/gf", 11.76798}}) {  // ISO 80000
+        CAPTURE(name);
+        std::string slashed = in_gf;
+        slashed.replace(slashed.find("push_oz"), 7, name);
+        other.columns["fn"] = name;
+        CHECK(imported(slashed, other).normal_N.back() == close_to(newtons).epsilon(1e-5));
+    }
+    for (const char* name : {"Force/g", "Force/daN", "Force_counts", "Force_gr"}) {
+        CAPTURE(name);
+        std::string unknown = in_gf;
+        unknown.replace(unknown.find("push_oz"), 7, name);
+        other.columns["fn"] = name;
+        CHECK(contains(message_of([&] { imported(unknown, other); }), "expected one in N"));
+    }
+    CHECK(contains(message_of([&] { imported(in_gf, options); }), "expected one in N, mN, uN, kN, gf, kgf or lbf"));
     options.columns = {{"x", "Load_mN"}};
     CHECK(contains(message_of([&] { imported(text, options); }), "found the column 'Load_mN' as x, expected a length"));
 }

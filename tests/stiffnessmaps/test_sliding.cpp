@@ -22,7 +22,8 @@ struct Raster {
     bool sinusoidal = true;  // depth 0.1 ... 2.9 mm at 1 Hz, else constant
     double depth_mm = 2.0;
     double friction = kFriction;
-    double lump = 0.0;  // extra stiffness in the middle, share
+    double lump = 0.0;       // extra stiffness in the middle, share
+    double deeper_mm = 0.0;  // of every second pass
 };
 
 // 40 x 30 mm, lines along x 2 mm apart there and back, two passes out of phase, 100 Hz, 20 mm/s.
@@ -35,8 +36,8 @@ std::string raster(const Raster& r) {
                 const int direction = line % 2 == 0 ? 1 : -1;
                 const double x = direction > 0 ? 0.2 * i : 40.0 - 0.2 * i;
                 const double y = 2.0 * line;
-                const double depth =
-                    r.sinusoidal ? 1.5 - 1.4 * std::cos(2.0 * 3.14159265 * 1.03 * t + pass * 2.0) : r.depth_mm;
+                const double depth = r.sinusoidal ? 1.5 - 1.4 * std::cos(2.0 * 3.14159265 * 1.03 * t + pass * 2.0)
+                                                  : r.depth_mm + pass % 2 * r.deeper_mm;
                 const double lump =
                     1.0 + r.lump * std::exp(-((x - 20.0) * (x - 20.0) + (y - 15.0) * (y - 15.0)) / 50.0);
                 const double fn = kStiffness_N_per_mm * lump * depth;
@@ -135,6 +136,18 @@ TEST_CASE("sliding: at constant depth the depth must be known, and is then kept 
     const Map known = imported(raster(r), height);
     REQUIRE(known.n_depths() == 1);
     CHECK(known.depths_m[0] == close_to(2e-3));
+}
+
+TEST_CASE("sliding: two depths fit every power of the force, so that they tell no surface") {
+    Raster r;
+    r.sinusoidal = false;
+    r.depth_mm = 1.0;
+    r.deeper_mm = 1.0;
+    CHECK(contains(refusal(raster(r)), "a tool that presses at one or two heights"));
+    ImportOptions height;
+    height.surface_z_m = -40e-3;
+    const Map known = imported(raster(r), height);
+    CHECK(force_in(known, 20.0, 15.0, 2.0) == close_to(2.0 * kStiffness_N_per_mm).epsilon(0.01));
 }
 
 TEST_CASE("sliding: depths that the recording has are taken as they are, and units that cannot be are told") {

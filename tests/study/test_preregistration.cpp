@@ -52,3 +52,11 @@ TEST_CASE("preregistration: what the protocol does not state is named first, wit
     CHECK(contains(sheet, "| 2 | all"));
     CHECK_FALSE(contains(sheet, "| 3 | all"));
 }
+
+TEST_CASE("preregistration: staircases promise thresholds, and no share of right answers") {
+    const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/threshold.json");
+    const std::string sheet = preregistration_sheet(protocol, {0, "palpa 1", {}});
+    CHECK(contains(sheet, "| staircases | threshold and JND"));
+    CHECK(contains(sheet, "`palpa study power` takes no staircases"));
+    CHECK_FALSE(contains(sheet, "against one half"));
+}

@@ -20,9 +20,10 @@ const strict = {'Content-Security-Policy': "default-src 'self'; script-src 'self
     'X-Content-Type-Options': 'nosniff', 'Referrer-Policy': 'no-referrer'};
 
 // The site, and what `palpa serve` answers to tablets. `desk.wrong`: it says that it got other bytes; `silent`: it answers
-// nothing, and closes nothing; `too_large`: the logs that it does not take; `pairing`: it asks for a code.
+// nothing, and closes nothing; `too_large`: the logs that it does not take; `pairing`: it asks for a code;
+// `locked_s`: it looks at none for so long.
 export async function openDesk() {
-    const desk = {code: '246810', token: 'token-of-the-test', logs: new Map(), wrong: false, bytes: 0, reachable: true, silent: false, too_large: () => false, pairing: true};
+    const desk = {code: '246810', token: 'token-of-the-test', logs: new Map(), wrong: false, bytes: 0, reachable: true, silent: false, too_large: () => false, pairing: true, locked_s: 0};
     const body = (request) => new Promise((resolve) => {
         const parts = [];
         request.on('data', (part) => parts.push(part));
@@ -39,6 +40,10 @@ export async function openDesk() {
         if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: desk.pairing, collects: true});
         if (url.pathname === '/api/pair') {
             const {code} = JSON.parse(await body(request));
+            if (desk.locked_s > 0) {
+                response.setHeader('Retry-After', String(desk.locked_s));
+                return answer(response, 429, {error: 'too many wrong codes', wait_s: desk.locked_s});
+            }
             return code === desk.code ? answer(response, 200, {token: desk.token}) : answer(response, 401, {error: 'another code'});
         }
         if (url.pathname.startsWith('/api/logs/') && request.method === 'PUT') {

@@ -46,6 +46,10 @@ test('paired: trials go to the desk; one with another hash is kept and sent agai
     await finishTrial(browser);
     await until('stored', async () => (await stored(page)).length === 1);
     assert.equal(desk.logs.size, 0);
+    desk.locked_s = 31;
+    await pairByDialog(page, desk.code);
+    assert.match(await page.textContent('#trials-state'), /looks at no code for 31 s/);
+    desk.locked_s = 0;
     desk.wrong = true;
     await pairByDialog(page, desk.code);
     await page.evaluate(() => palpaTrials.send());

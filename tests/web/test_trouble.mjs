@@ -98,6 +98,20 @@ test('a full storage with trials: export, remove, and it goes on; what was expor
     await until('the next trial', async () => (await report(page)).trials.length === 3);
 }));
 
+test('a full storage with a desk: the desk gets the trial, and it goes on', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    await pairByDialog(page, desk.code);
+    await fillStorage(page);
+    await finishTrial(browser);
+    await until('at the desk', () => desk.logs.size === 1);
+    await page.evaluate(() => palpaTrials.open());
+    await until('said', async () => /0 waiting, 1 at the desk/.test(await page.textContent('#trials-state')));
+    assert.match(await page.textContent('#trials-list'), /run-01: at the desk/);
+    await page.click('#close-trials');
+    await page.keyboard.press('r');
+    await until('the next trial', async () => (await report(page)).trials.length === 2);
+}));
+
 test('the browser closes its storage: what is palpated afterwards can be exported', () => withPage({quiet: true}, async (browser, desk) => {
     const {page} = browser;
     await finishTrial(browser);

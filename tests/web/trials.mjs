@@ -34,6 +34,6 @@ export async function pairByDialog(page, code) {
     await page.evaluate(() => palpaTrials.open());
     await page.fill('#code', code);
     await page.click('#pair-now');
-    await page.waitForFunction(() => document.getElementById('trials-state').textContent.match(/Paired with|does not accept|not reachable/));
+    await page.waitForFunction(() => document.getElementById('trials-state').textContent.match(/Paired with|does not accept|looks at no code|not reachable/));
     await page.click('#close-trials');
 }

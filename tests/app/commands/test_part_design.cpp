@@ -99,6 +99,10 @@ TEST_CASE("part compare: the alternating and the layered beam, with a figure") {
     CHECK(json["a"]["mass_g"].get<double>() == close_to(11.28));
     if (has_gnuplot()) CHECK(std::filesystem::exists(folder / "f.svg"));
     CHECK(test::contains(palpa_with("part compare " + kBeam + " " + kBeam).out, "within the 15 %"));
+    const std::string buttons =
+        palpa_with("part compare " + kShipped + "button.json " + kShipped + "bare-cover.json --tolerance 0.1").out;
+    CHECK(test::contains(buttons, "the spring of its button is left out"));
+    CHECK_FALSE(test::contains(buttons, "people can just tell"));
     CHECK(palpa_with("part compare " + kBeam + " " + other + " -o a.gif").status == 2);
     CHECK(palpa_with("part compare " + kBeam + " " + kShipped + "toothbrush-a.json").status == 2);
 }

@@ -138,3 +138,24 @@ TEST_CASE("live: closing a study's trial that was touched asks first, with or wi
     CHECK_FALSE(trial_goes_on(desk.run()));
     CHECK_FALSE(desk.asks_to_quit());
 }
+
+TEST_CASE("live: ratings of conditions whose trials are mixed are refused before a study begins") {
+    const TemporaryFolder folder;
+    const auto load = [&](const std::string& order) {
+        const std::string pad =
+            R"("modality": "touchpad", "scene": ")" PALPA_SOURCE_DIR R"(/assets/scenes/block-screen.json"})";
+        write_text_atomically(folder / "p.json",
+                              R"({"name": "n", "version": "1", "seed": 4, "order": "fixed", "repeats": 2,
+            "conditions": [{"id": "a", )" +
+                                  pad + R"(, {"id": "b", )" + pad + R"(], "trial_order": ")" + order + R"(",
+            "ratings": [{"id": "effort", "text": "It was tiring.", "from": 1, "to": 7}]})");
+        Desk desk("");
+        RunOptions options;
+        options.protocol = (folder / "p.json").string();
+        options.log = (folder / order).string();
+        load_study(options, desk.app);
+    };
+    CHECK(contains(message_of([&] { load("interleaved"); }), "ratings: found questions about each condition"));
+    CHECK_FALSE(std::filesystem::exists(folder / "interleaved"));
+    CHECK(message_of([&] { load("blocked"); }) == "");
+}

@@ -122,6 +122,21 @@ TEST_CASE("calibrate screen: while the pen presses the field takes the keys, als
     CHECK(form.recording->session.points[0].force_N == close_to(110.0 * calibration::kN_per_gf));
 }
 
+TEST_CASE("calibrate screen: a decimal comma is a decimal point, and not left out") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    CalibrateForm& form = *open_form(desk);
+    open_typed(folder, form);
+    frames(desk, 5);
+    hold(0.02, *form.recording);
+    frames(desk, 8);
+    for (const char letter : std::string("12,5")) type(desk.window, letter);
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 12);
+    REQUIRE(form.recording->session.points.size() == 1);
+    CHECK(form.recording->session.points[0].force_N == close_to(12.5 * calibration::kN_per_gf));
+}
+
 TEST_CASE("calibrate screen: points that make no profile say why, and the session goes on") {
     const TemporaryFolder folder;
     ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);

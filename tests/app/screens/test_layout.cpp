@@ -34,14 +34,22 @@ TEST_CASE("layout: controls and tissue share the window without overlapping, wha
     }
 }
 
-TEST_CASE("layout: a touched screen's own scale is used as far as the controls fit, a measured one always") {
+TEST_CASE("layout: a screen's own scale, measured or told by the system, is used as far as the controls fit") {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     CHECK(control_scale(unknown, 2560.0f, 1600.0f, 12.6) == close_to(12.6));
     CHECK(control_scale(unknown, 1600.0f, 2560.0f, 12.6) == close_to(12.6));
     const float small = control_scale(unknown, 1170.0f, 2532.0f, 18.9);  // a telephone
     CHECK(small < 18.0f);
     CHECK(layout_of(1170.0f, 2532.0f, small, false).controls);
-    CHECK(control_scale(18.0, 1170.0f, 2532.0f, 18.9) == close_to(18.0));
+    CHECK(control_scale(8.0, 1170.0f, 2532.0f, 18.9) == close_to(8.0));
+    // a screen of 7" turned either way, and a measurement that went wrong: a person without a keyboard can still undo it
+    for (const auto& [width, height, scale] :
+         {std::tuple{1024.0f, 600.0f, 6.63}, {600.0f, 1024.0f, 7.5}, {800.0f, 480.0f, 20.0}}) {
+        const float fits = control_scale(scale, width, height);
+        CAPTURE(fits);
+        CHECK(fits < scale);
+        CHECK(layout_of(width, height, fits, false).controls);
+    }
 }
 
 TEST_CASE("layout: a column beside the tissue away from the hand, a strip above it on an upright window") {

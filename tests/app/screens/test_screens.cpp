@@ -150,20 +150,22 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
                           {2560, 1600, kMissing, true},
                           {2560, 1600, kTablet_px_per_mm, false, true},
                           {1600, 2560, kTablet_px_per_mm, false},
-                          {1024, 600, kMissing, true},
+                          {1024, 600, 6.63, true},              // 7 inch, measured
+                          {800, 1280, 7.4, false, false, 140},  // 8 inch, measured
                           {1280, 800, kMissing, false, false, 140},
                           {200, 100, kMissing, false}};
     for (const Case& c : cases) {
         OffScreen screen = screen_of(c);
         check_case(session, trial, c, "trial", screen);
         if (c.width_px < 600) continue;  // panels need some room
+        check_case(stopped, trial, c, "paused", screen);
+        if (std::isfinite(c.px_per_mm) && c.px_per_mm < kTablet_px_per_mm) continue;  // other panels scroll there
         check_case(marked, asked, c, "asked", screen);
         check_case(session, menu, c, "menu", screen);
         check_case(session, menu_settings, c, "menu-settings", screen);
         check_case(session, menu_experimenter, c, "menu-experimenter", screen);
         check_case(session, help, c, "help", screen);
         check_case(session, guided, c, "guided", screen);
-        check_case(stopped, trial, c, "paused", screen);
         check_case(session, history, c, "history", screen);
         check_case(done, guided_result, c, "guided-result", screen);
         check_case(session, cost, c, "cost", screen);

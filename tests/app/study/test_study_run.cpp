@@ -282,11 +282,16 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
         CHECK((&due_scene(run) == &run.stimuli[0][0]) != reference_first);
         run_trial(run);
         REQUIRE(at<step::Question>(run));
-        run.step_began_s = 5.0;
+        run.step_began_s = 5.0 + 10.0 * pairs;
         const bool comparison_softer = trial.comparison == 0;
-        choose_softer(comparison_softer != reference_first, 7.5 + pairs, run);  // always right
+        choose_softer(comparison_softer != reference_first, 7.5 + 11.0 * pairs, run);  // always right
     }
     CHECK(pairs == 4);
+    files::Table events = files::read_tsv(folder / "log/sub-01/beh/sub-01_task-softer_run-01_events.tsv");
+    for (int pair = 0; events.next(); ++pair) {
+        CHECK(events.finite_number(events.column("onset")) == close_to(10.0 * pair));
+        CHECK(events.finite_number(events.column("duration")) == close_to(2.5 + pair));
+    }
     const Observations seen = read_study(folder / "log");
     CHECK(seen.interrupted_trials == 0);
     REQUIRE(seen.choices.size() == 4);
