@@ -68,9 +68,11 @@ const answerQuestions = async (browser) => {
     for (let i = 0; i < 2; ++i) await key(page, 'Enter');
     assert.equal((await report(page)).study.step, 'questions'); // that is no number
     await tap(browser, 200, 178);
+    await page.keyboard.press('Control+A');
+    await frames(page, 4);
     await page.keyboard.type('33');
     await frames(page, 4);
-    await tap(browser, 260, 308);
+    await tap(browser, 260, 348);
     await key(page, 'Enter');
 };
 // What the storage says, while it still has the texts: marks by trial.
@@ -309,10 +311,11 @@ test('without a desk: the protocol was kept, two people and a single run are exp
     assert.deepEqual([counted.participants, counted.trials, counted.practice_trials, counted.interrupted_trials], [2, 2, 0, 0]);
 }));
 
-test('a full storage: the study waits and says so; exporting lets it go on', options, () => withDesk(async (browser, desk) => {
+test('a full storage without a desk: the study waits and says so; exporting lets it go on', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=twice&participant=5');
     await begin(page);
+    await page.context().setOffline(true); // else the trial goes to the desk, and the study on
     await page.evaluate(() => {
         window.ways = ['put', 'add'].map((way) => [way, IDBObjectStore.prototype[way]]);
         for (const [way] of ways) IDBObjectStore.prototype[way] = () => { throw new DOMException('full', 'QuotaExceededError'); };
@@ -321,6 +324,8 @@ test('a full storage: the study waits and says so; exporting lets it go on', opt
     await page.waitForTimeout(800);
     await key(page, 'Enter');
     await key(page, 'Enter'); // no way on
+    await key(page, 'Escape'); // takes neither the reason away nor the way on
+    await frames(page, 3);
     assert.equal((await report(page)).study.step, 'instructions');
     assert.ok((await report(page)).problems.some((text) => text.includes('storage of this browser is full')));
     const saved = page.waitForEvent('download');
@@ -333,6 +338,7 @@ test('a full storage: the study waits and says so; exporting lets it go on', opt
     // once there is room, the study keeps the exported trial too, and does not ask for it again
     await page.evaluate(() => { for (const [way, real] of ways) IDBObjectStore.prototype[way] = real; });
     await until('kept', async () => (await stored(page)).some((trial) => trial.finished && trial.exported));
+    await page.context().setOffline(false);
     await reload(page);
     await at(page, 'again');
     assert.equal((await report(page)).study.finished, 1);
