@@ -100,9 +100,8 @@ void check_ratings(const study::Protocol& protocol, const std::filesystem::path&
     if (protocol.ratings.empty() || protocol.conditions.size() < 2 ||
         protocol.trial_order == study::TrialOrder::blocked || std::filesystem::exists(log / "protocol.json"))
         return;
-    throw files::bad_input(protocol.file.string(), "ratings",
-                           "questions about each condition, whose trials `trial_order` mixes",
-                           "no ratings, or trials in blocks");
+    const std::string file = protocol.file.string();
+    throw files::bad_input(file, "ratings", "ratings of conditions whose trials are mixed", "none");
 }
 
 // A participant must be able to read what is agreed to and asked. Throws InputError.

@@ -155,7 +155,8 @@ TEST_CASE("live: ratings of conditions whose trials are mixed are refused before
         options.log = (folder / order).string();
         load_study(options, desk.app);
     };
-    CHECK(contains(message_of([&] { load("interleaved"); }), "ratings: found questions about each condition"));
+    CHECK(contains(message_of([&] { load("interleaved"); }),
+                   "ratings: found ratings of conditions whose trials are mixed"));
     CHECK_FALSE(std::filesystem::exists(folder / "interleaved"));
     CHECK(message_of([&] { load("blocked"); }) == "");
 }
