@@ -60,8 +60,8 @@ struct Difference {
     std::size_t apart_at = 0;  // and after which sample
     double depth_share = 0.0;  // greatest difference in depth, as a share of the depth without nodules,
     std::size_t depth_at = 0;  // and after which sample
-    bool beyond =
-        false;  // the tissue is not known as deep as the force presses: depths and lag are those of its last depth
+    // The tissue is not known as deep as the force presses: depths and lag are those of its last depth.
+    bool beyond = false;
 };
 Difference difference_of(const std::vector<platform::Sample>& samples, const scene::Scene& scene,
                          const scene::Plan& with, const scene::Plan& without, const scene::ScreenArea& screen);

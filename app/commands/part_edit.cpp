@@ -32,11 +32,11 @@ void edit_part(const EditOptions& options) {
                                    "fewer than the " + std::to_string(there) + " operations of shape");
         }
     }
-    say_warnings(edited.part);
     files::Json report{{"part", options.output}, {"undone", options.undo}};
     report["changed_voxels"] = files::Json::array();
     for (const std::string& operation : options.operations)
         report["changed_voxels"].push_back(parts::append_operation(files::parse_json(operation, "--op"), edited));
+    say_warnings(edited.part);  // also of what an operation has just added
     parts::save_part(edited, options.output);
     report["operations"] = edited.json["shape"].size();
     report["runs_sha256"] = parts::runs_sha256(edited.part.voxels);
