@@ -42,6 +42,11 @@ class Script {
         out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
     }
     void wait(double seconds) { t_s_ += seconds; }
+    // Until `file` is there with `text` in it; then a person takes a moment.
+    void wait(const std::filesystem::path& file, const std::string& text = "") {
+        out_ << t_s_ << "\twait\t" << file.string() << '\t' << text << '\n';
+        wait(0.5);
+    }
     void key(int code) {
         row("key", code, "down", 0, 0, 0.0);
         wait(0.06);
@@ -305,36 +310,36 @@ TEST_CASE("consent: a person agrees by a key of its own, practises a pair, and g
         "staircase": {"method": "weighted-up-down", "reference_kPa": 10, "comparisons_kPa": [12, 15, 20], "trials": 2},
         "conditions": [{"id": "pen", "modality": "pen", "scene": ")" PALPA_SOURCE_DIR
                           R"(/assets/scenes/default.json"}]})");
+    const std::filesystem::path now = folder / "log/sub-01/now.json";
+    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
     Script script(folder / "script.tsv");
-    script.wait(3.0);
+    script.wait(now, R"("step": "consent")");
     script.key(kEnter);  // does not agree for anybody
-    script.wait(0.5);
     script.key(k1);
-    script.wait(0.5);
+    script.wait(now, R"("step": "instructions")");
     script.key(kEnter);  // begin the practice
-    for (int pair = 0; pair < 3; ++pair) {
-        for (int interval = 0; interval < 2; ++interval) {
-            script.wait(1.0);
-            script.stroke(0.4, true);
-            script.key(kF);
-        }
-        script.wait(1.0);
-        script.key(pair == 1 ? k2 : k1);
-        script.wait(0.5);
-        if (pair > 0) continue;
-        script.key(kEnter);  // it was told whether that was right
-        script.wait(0.5);
+    for (int interval = 0; interval < 6; ++interval) {
+        script.wait(stem + std::to_string(interval + 1) + "_events.tsv");
+        script.stroke(0.4, true);
+        script.key(kF);
+        if (interval % 2 == 0) continue;
+        script.wait(now, R"("step": "question")");
+        script.key(interval == 3 ? k2 : k1);
+        if (interval > 1) continue;
+        script.wait(now, R"("step": "told")");
+        script.key(kEnter);
+        script.wait(now, R"("step": "instructions")");
         script.key(kEnter);  // begin the tests
     }
-    const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(script.close() + 5.0) +
-                                                              " --screenshot " + (folder / "p.png").string());
-    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
-            0);
+    script.close();
+    REQUIRE(run_study_to("done", folder,
+                         "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
+                             " --participant 01 --json --screenshot " + (folder / "p.png").string()) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["finished"] == 3);
     CHECK(result["step"] == "done");
     CHECK(result["overflow"] == "");
-    CHECK(text_of(folder / "log/sub-07/beh/sub-07_task-ratings_beh.tsv").find("\tconsent\tgiven\n") !=
+    CHECK(text_of(folder / "log/sub-01/beh/sub-01_task-ratings_beh.tsv").find("\tconsent\tgiven\n") !=
           std::string::npos);
     const Observations seen = read_study(folder / "log");
     CHECK(seen.practice_trials == 1);

@@ -8,7 +8,8 @@
 //
 //   t_s  kind  id  phase  x_px  y_px  pressure
 //
-// A row `t_s wait FILE` holds up all rows after it until FILE is there, for 100 s at most: a person waits for the screen.
+// A row `t_s wait FILE [TEXT]` holds up all rows after it until FILE is there, with TEXT in it, for 100 s at most: a
+// person waits for the screen.
 // kind: pen | touch | mouse | key. id: of the touch, of the key its keycode on this server (65 space, 100 left,
 // 102 right, 98 up, 104 down, 99 and 105 page up and down, 50 shift, 36 enter, 9 escape, 23 tab, 97 home, 103 end;
 // others: 10..19 digits 1..0, 24..33 Q..P, 38..46 A..L, 52..58 Z..M; down and up only), else 0. phase: hover | down | move | up, for the mouse also
@@ -55,6 +56,7 @@ struct Row {
     double y_px = 0.0;
     double pressure = 0.0;
     std::string file;  // of wait
+    std::string text;  // of wait; empty: the file need only be there
 };
 
 constexpr double kLongestWait_s = 100.0;
@@ -79,7 +81,9 @@ std::vector<Row> read_script(std::istream& in) {
             fields >> row.file;
         else
             fields >> row.id >> row.phase >> row.x_px >> row.y_px >> row.pressure;
-        if (!fields) throw std::runtime_error("script, line " + std::to_string(number) + ": want 7 columns, 3 of wait");
+        if (!fields)
+            throw std::runtime_error("script, line " + std::to_string(number) + ": want 7 columns, 3 or 4 of wait");
+        if (row.kind == "wait" && fields.get() == '\t') std::getline(fields, row.text);
         rows.push_back(row);
     }
     return rows;
@@ -164,9 +168,16 @@ void play(const Row& row, Devices& devices) {
     throw std::runtime_error("script: kind is " + row.kind + ", want pen, touch, mouse or key");
 }
 
-void wait_for(const std::string& file) {
-    for (double waited_s = 0.0; !std::filesystem::exists(file); waited_s += 0.02) {
-        if (waited_s > kLongestWait_s) throw std::runtime_error(file + ": is not there, waited 100 s");
+bool holds(const std::string& file, const std::string& text) {
+    std::ifstream in(file);
+    std::ostringstream all;
+    all << in.rdbuf();
+    return in.is_open() && all.str().find(text) != std::string::npos;
+}
+
+void wait_for(const Row& row) {
+    for (double waited_s = 0.0; !holds(row.file, row.text); waited_s += 0.02) {
+        if (waited_s > kLongestWait_s) throw std::runtime_error(row.file + ": no " + row.text + " within 100 s");
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
 }
@@ -186,7 +197,7 @@ void run(std::istream& in, double start_s) {
         std::this_thread::sleep_until(due);
         if (row.kind == "wait") {
             const auto waits = Clock::now();
-            wait_for(row.file);
+            wait_for(row);
             start += Clock::now() - waits;
             continue;
         }
