@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <array>
 #include <cerrno>
+#include <ctime>
 #include <fcntl.h>
 #include <netinet/tcp.h>
 #include <openssl/err.h>
@@ -90,6 +91,21 @@ std::string fingerprint(const SSL_CTX& tls) {
         out.push_back("0123456789ABCDEF"[digest[i] & 15]);
     }
     return out;
+}
+
+std::string out_of_date(const SSL_CTX& tls) {
+    const X509* certificate = SSL_CTX_get0_certificate(&tls);
+    if (certificate == nullptr) return "";
+    const ASN1_TIME* from = X509_get0_notBefore(certificate);
+    const ASN1_TIME* until = X509_get0_notAfter(certificate);
+    const bool early = X509_cmp_current_time(from) > 0;
+    if (!early && X509_cmp_current_time(until) > 0) return "";
+    std::tm utc{};
+    std::array<char, 32> text{};
+    if (ASN1_TIME_to_tm(early ? from : until, &utc) == 1)
+        std::strftime(text.data(), text.size(), " %Y-%m-%d %H:%M UTC", &utc);
+    return std::string(early ? "the certificate is not good before" : "the certificate was good until") + text.data() +
+           ": browsers warn of it or refuse the desk";
 }
 
 std::string peer_address(int fd) {

@@ -24,6 +24,9 @@ TlsContext make_tls(const std::string& cert_file, const std::string& key_file);
 // Returns the SHA-256 of the certificate as browsers show it, "AB:CD:...".
 std::string fingerprint(const SSL_CTX& tls);
 
+// Says that the certificate has ended, or does not begin yet, and when; empty: it is good now.
+std::string out_of_date(const SSL_CTX& tls);
+
 inline constexpr std::uint64_t kSkipped_bytes = 64 * 1024;
 
 class Connection : public httplib::Stream {

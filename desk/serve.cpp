@@ -186,9 +186,10 @@ void serve(const ServeOptions& options) {
     TlsContext tls = with_tls ? make_tls(options.tls_cert, options.tls_key) : TlsContext();
     X509* certificate = tls ? SSL_CTX_get0_certificate(tls.get()) : nullptr;
     const std::string print = tls ? fingerprint(*tls) : "";
+    std::vector<std::string> notes;
+    if (const std::string note = tls ? out_of_date(*tls) : ""; !note.empty()) notes.push_back(note);
 
     std::string trouble;
-    std::vector<std::string> notes;
     Desk desk{options,
               with_tls,
               certificate,

@@ -214,6 +214,7 @@ DeviceState blank_state(const DeviceModel& model) {
     state.good_shift_m = state.shift_m;
     const int m = channels_of(model);
     state.K = mechanics::band_matrix(model.equations(), model.band);
+    state.summed = state.K.values;
     state.loads.setZero(model.equations(), m);
     state.factor_loads.setZero(model.equations(), m);
     state.answers.setZero(model.equations(), m + 1);

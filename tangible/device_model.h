@@ -76,6 +76,7 @@ struct DeviceState {
     // scratch
     Eigen::Matrix3Xd good_u_m, gradient_N;
     mechanics::BandMatrix K;         // factor of the tangent
+    Eigen::MatrixXd summed;          // values of the repaired tangent before they are factored
     Eigen::MatrixXd loads;           // equations x channels: what a unit of each channel does to the nodes
     Eigen::MatrixXd factor_loads;    // the same at the shape that the factor was made at
     Eigen::MatrixXd answers;         // K^-1 of factor_loads, and of what is out of balance

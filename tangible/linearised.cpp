@@ -176,11 +176,16 @@ bool factor_tangent(const DeviceModel& model, DeviceState& state) noexcept {
     ++state.factorisations;
     if (!sum_tangent(model, state, Tangent::exact)) return false;
     bool good = mechanics::factor_in_place(state.K) == 0;
-    // the tangent without negative eigenvalues of cells, and then with a stiffness of its own
-    for (const double share : {0.0, 1e-4, 1e-3, 1e-2, 1e-1}) {
-        if (good) break;
+    if (!good) {
+        // the tangent without negative eigenvalues of cells, whose finding costs most of a repair, and then with a stiffness
+        // of its own
         state.repaired = true;
         if (!sum_tangent(model, state, Tangent::positive)) return false;
+        state.summed = state.K.values;
+    }
+    for (const double share : {0.0, 1e-4, 1e-3, 1e-2, 1e-1}) {
+        if (good) break;
+        state.K.values = state.summed;
         state.K.values.row(0).array() += share * model.hold_N_per_m;
         good = mechanics::factor_in_place(state.K) == 0;
     }

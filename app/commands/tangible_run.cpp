@@ -22,6 +22,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "scene/find_file.h"
+#include "session/device_rows.h"
 #include "session/plan_in_progress.h"
 
 namespace palpa::app {
@@ -34,6 +35,7 @@ struct TangibleRunArguments {
     std::string plant;
     std::vector<std::string> ports;
     std::string press;
+    std::string replay;
     std::string log;
     std::string fidelity;  // empty: the scene's
     std::string command;
@@ -52,7 +54,22 @@ tangible::LoopOptions loop_options_of(const TangibleRunArguments& arguments, con
     return options;
 }
 
+// Recorded rows hold all that the loop took in: there is neither a plant nor a finger.
+void check_replay(const TangibleRunArguments& arguments) {
+    if (arguments.replay.empty()) return;
+    for (const auto& [option, given] :
+         {std::pair{"--plant", !arguments.plant.empty()}, std::pair{"--port", !arguments.ports.empty()},
+          std::pair{"--press", !arguments.press.empty()}, std::pair{"--seconds", arguments.seconds > 0.0},
+          std::pair{"--headless", arguments.headless}}) {
+        if (given)
+            throw files::InputError(std::string(option) +
+                                    ": found beside --replay, expected one of the two: recorded rows are run as they "
+                                    "are");
+    }
+}
+
 std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& scene) {
+    if (!arguments.replay.empty()) return "";
     if (!arguments.ports.empty() && !arguments.plant.empty())
         throw files::InputError("--port: found beside --plant " + arguments.plant + ", expected one of the two");
     // ports on the command line count more than the scene's plant
@@ -67,8 +84,7 @@ std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& 
     return plant;
 }
 
-// The finger on a plant: a press, recorded rows are replayed elsewhere, or the built-in motion to three quarters of the depth
-// that the tissue is known for.
+// The finger on a plant: a press, or the built-in motion to three quarters of the depth that the tissue is known for.
 session::Finger finger_of(const TangibleRunArguments& arguments, std::vector<devices::PressRow> press,
                           const tangible::TangiblePlan& plan) {
     session::Finger finger;
@@ -82,9 +98,15 @@ session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, cons
                                      std::vector<devices::PressRow> press,
                                      const std::shared_ptr<const tangible::TangiblePlan>& plan) {
     session::TangibleRunOptions run;
-    run.finger = finger_of(arguments, std::move(press), *plan);
     run.log = arguments.log;
     run.seed = arguments.seed;
+    if (!arguments.replay.empty()) {
+        const auto rows =
+            session::read_device_rows(arguments.replay, session::field_names<tangible::TangibleFeedback>());
+        if (!arguments.log.empty()) fs::create_directories(arguments.log);
+        return session::replay_tangible_rows(plan, rows, run);
+    }
+    run.finger = finger_of(arguments, std::move(press), *plan);
     std::optional<tangible::Plant> plant;
     if (!plant_name.empty()) plant = make_plant(plan->model, tangible::read_plant(plant_name), plan->loop);
     if (!arguments.log.empty()) fs::create_directories(arguments.log);
@@ -152,6 +174,22 @@ void name_limits(const session::GuardFigures& guard, files::Json& json) {
     std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
 }
 
+// Ticks that come too late make a coarser loop, whose force lags behind the finger.
+void note_missed(double rate_Hz, files::Json& json) {
+    constexpr std::int64_t kFew = 50;  // a busy machine now and then misses one
+    const auto ticks = json["ticks"].get<std::int64_t>();
+    const auto missed = json["missed_ticks"].get<std::int64_t>();
+    if (missed * kFew <= ticks + missed) return;
+    const std::string note = std::to_string(missed) + " of " + std::to_string(ticks + missed) +
+                             " ticks were missed: a tick takes " +
+                             files::short_number(1e-3 * json["tick_us"]["p50"].get<double>()) + " ms here (median; " +
+                             files::short_number(1e-3 * json["tick_us"]["p99"].get<double>()) +
+                             " ms in one of a hundred), and the period is " + files::short_number(1e3 / rate_Hz) +
+                             " ms; --fidelity stale or linear, or a lower --rate-Hz, take less";
+    json["notes"].push_back(note);
+    std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
+}
+
 void note_less_depth(const session::Finger& finger, files::Json& json) {
     const double usual_m = tangible::PressMotion{}.depth_m;
     if (finger.motion.depth_m >= usual_m) return;
@@ -167,7 +205,9 @@ void run_tangible(const TangibleRunArguments& arguments) {
         files::check_output_folder(arguments.log);
         files::check_new(fs::path(arguments.log) / "ticks.tsv");
     }
+    check_replay(arguments);
     const std::string plant_name = plant_of(arguments, scene);
+    const bool real = plant_name.empty() && arguments.replay.empty();
     std::vector<devices::PressRow> press;  // read before the tissue is prepared, which takes seconds
     if (!arguments.press.empty()) press = devices::read_press(arguments.press);
     const scene::Plan scene_plan = session::make_plan_here(scene);
@@ -178,8 +218,10 @@ void run_tangible(const TangibleRunArguments& arguments) {
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     if (!plant_name.empty() && arguments.press.empty()) note_less_depth(finger_of(arguments, {}, *plan), json);
-    json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
-    if (plant_name.empty()) name_limits(result.guarded, json);
+    json["devices"] = devices_json(*plan, real, arguments.ports);
+    if (!arguments.replay.empty()) json["replay"] = arguments.replay;
+    if (real) name_limits(result.guarded, json);
+    note_missed(plan->loop.rate_Hz, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())
@@ -226,6 +268,9 @@ void add_tangible_run(CLI::App& tangible) {
     command->add_option("--press", arguments->press,
                         "PRESS.tsv (t_s, x_mm, y_mm, depth_mm or force_N) of the finger on a plant (default: there and "
                         "back, 6 mm at 5 mm/s, or 3/4 of the depth that the tissue is known for where that is less)");
+    command->add_option("--replay", arguments->replay,
+                        "PRESS.tangible.tsv of an earlier --log: what the loop took in then, run again without a "
+                        "device; the same commands");
     command
         ->add_option("--seconds", arguments->seconds, "how long (default: the press once; a real device until stopped)")
         ->check(CLI::Range(0.01, 1e6));

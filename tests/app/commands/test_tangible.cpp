@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "files/json.h"
+#include "files/table.h"
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
 #include "tests/assets.h"
@@ -93,6 +94,41 @@ TEST_CASE("tangible run: on a plant in virtual time the log repeats byte for byt
     const Called again = palpa_with(run + strip.path("a"));
     CHECK(again.status == 2);
     CHECK(contains(again.err, "a/ticks.tsv: found something of that name, expected a new name"));
+}
+
+TEST_CASE("tangible run: the recorded rows of a run give its commands again, without a plant") {
+    const StripFolder strip;
+    const std::string run = "tangible run " + strip.path("scene.json") + " --json --log ";
+    result_of(palpa_with(run + strip.path("a") + " --headless --seconds 1"));
+    const std::string replay = " --replay " + strip.path("a/press.tangible.tsv");
+    const files::Json json = result_of(palpa_with(run + strip.path("b") + replay));
+    CHECK(json["ticks"] == 101);
+    CHECK(json["plant"].is_null());
+    for (const files::Json& device : json["devices"]) CHECK(device["simulated"] == true);
+    files::Table first = files::read_tsv(strip.folder / "a/ticks.tsv");
+    files::Table again = files::read_tsv(strip.folder / "b/ticks.tsv");
+    while (first.next()) {
+        REQUIRE(again.next());
+        for (std::size_t i = 0; i < first.columns().size(); ++i) {
+            CAPTURE(first.columns()[i]);
+            // the plant's force is what nobody knows any more
+            CHECK(again.field(i) == (first.columns()[i] == "force_N" ? "n/a" : first.field(i)));
+        }
+    }
+    CHECK_FALSE(again.next());
+    const Called both = palpa_with(run + strip.path("c") + replay + " --plant exact");
+    CHECK(both.status == 2);
+    CHECK(contains(both.err, "--plant: found beside --replay"));
+    CHECK_FALSE(std::filesystem::exists(strip.folder / "c"));
+}
+
+TEST_CASE("tangible run: ticks that were missed are named") {
+    const StripFolder strip;
+    const Called live = palpa_with("tangible run " + strip.path("scene.json") +
+                                   " --fidelity converged --rate-Hz 2000 --seconds 0.5 --json");
+    const files::Json json = result_of(live);
+    REQUIRE(json["missed_ticks"].get<int>() > json["ticks"].get<int>());  // a tick takes far more than 0.5 ms
+    CHECK(contains(live.err, "ticks were missed: a tick takes"));
 }
 
 TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is found from its press") {
