@@ -166,6 +166,17 @@ void print_choices(const stiffnessmaps::Map& map) {
     }
 }
 
+files::Json tangential_json(const std::optional<stiffnessmaps::ImportResidual>& residual) {
+    if (!residual) return nullptr;
+    return {{"points", residual->n},
+            {"median_N", residual->median_N},
+            {"worst_N", residual->worst_N},
+            {"greatest_force_N", residual->greatest_N},
+            {"median_share", residual->median_share()},
+            {"worst_share", residual->worst_share()},
+            {"worst_at_mm", {1e3 * residual->worst_x_m, 1e3 * residual->worst_y_m, 1e3 * residual->worst_depth_m}}};
+}
+
 files::Json import_json(const stiffnessmaps::ImportReport& report) {
     const stiffnessmaps::ImportResidual& residual = report.residual;
     return {
@@ -184,6 +195,7 @@ files::Json import_json(const stiffnessmaps::ImportReport& report) {
         {"median_residual_share", residual.median_share()},
         {"worst_residual_share", residual.worst_share()},
         {"worst_residual_at_mm", {1e3 * residual.worst_x_m, 1e3 * residual.worst_y_m, 1e3 * residual.worst_depth_m}},
+        {"tangential_residual", tangential_json(report.tangential)},
         {"notes", report.notes}};
 }
 
@@ -210,6 +222,11 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
                 residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
                 100.0 * residual.worst_share(),
                 map.noise_N ? (files::short_number(*map.noise_N) + " N").c_str() : "not known (too few neighbours)");
+    if (!report.tangential) return;
+    const stiffnessmaps::ImportResidual& tangential = *report.tangential;
+    std::printf("  tangential force against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%)\n",
+                tangential.median_N, tangential.worst_N, tangential.greatest_N, 100.0 * tangential.median_share(),
+                100.0 * tangential.worst_share());
 }
 
 constexpr const char* kTableOptions = "Tables";
@@ -277,9 +294,6 @@ void add_table_options(CLI::App& command, ImportArguments& a) {
                     "fz, n_x, n_y, n_z")
         ->allow_extra_args(false)
         ->group(kTableOptions);
-    text("--length-unit", a.length_unit, "unit of x, y, z: mm, m or um (default: from the column's name, else mm)")
-        ->check(one_of({"mm", "m", "um"}));
-    text("--depth-unit", a.depth_unit, "unit of depths: mm, m or um")->check(one_of({"mm", "m", "um"}));
     text("--region-mm", a.region, "X0,X1,Y0,Y1: import only the places in this region");
     text("--tilt", a.tilt, "tilt of the surface: remove (default) or keep")->check(one_of({"remove", "keep"}));
     number("--outliers", a.outliers,
@@ -369,8 +383,22 @@ void add_maps_import(CLI::App& maps) {
         ->check(CLI::Range(1e-3, 1e3));
     command->add_option("--name", a->name, "name of the map (default: the file's name)");
     command
-        ->add_option("--force-unit", a->force_unit, "unit of forces: N or mN (default: from the column's name, else N)")
+        ->add_option(
+            "--force-unit", a->force_unit,
+            "unit of forces: N or mN (default: from the column's name, else N); also takes forces outside 0.01 "
+            "to 200 N")
         ->check(one_of({"N", "mN"}));
+    command
+        ->add_option("--length-unit", a->length_unit,
+                     "unit of x, y, z: mm, m or um (default: from the column's name, else mm); also takes places that "
+                     "cover less than 1 mm or more than 1 m (arrays: mm)")
+        ->check(one_of({"mm", "m", "um"}));
+    command
+        ->add_option(
+            "--depth-unit", a->depth_unit,
+            "unit of depths: mm, m or um (default: from the column's name, else mm); also takes depths outside 0.05 to "
+            "100 mm (arrays: mm)")
+        ->check(one_of({"mm", "m", "um"}));
     command->add_flag("--negate-force", a->negate_force, "reverse the sign of the forces");
     command->add_option("--licence", a->licence, "licence of the recording, stored in the map's source");
     add_table_options(*command, *a);

@@ -112,10 +112,48 @@ SplitName split_name(std::string_view name) {
     return {lower(name), nullptr};
 }
 
+// Returns the unit that a name states and that is none of the known ones; "" if it states none.
+std::string_view other_unit(std::string_view name) {
+    if (split_name(name).unit != nullptr) return {};
+    const std::string_view last = last_part(name);
+    const bool other = std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end();
+    return other || states_a_unit(name) ? last : std::string_view();
+}
+
+// Returns the name before such a unit, in lower case.
+std::string bare_name(std::string_view name) {
+    const std::string_view unit = other_unit(name);
+    if (unit.empty()) return split_name(name).bare;
+    name = name.substr(0, static_cast<std::size_t>(unit.data() - name.data()) - 1);
+    return split_name(name).bare;
+}
+
 char kind_of(Role role) {
     if (is_force(role)) return 'f';
     if (is_depth(role) || is_position(role)) return 'l';
     return role == Role::time ? 't' : ' ';
+}
+
+// Returns the option that states the unit of a role; null if there is none.
+const char* unit_option(Role role) {
+    return is_force(role)      ? "--force-unit N or mN"
+           : is_depth(role)    ? "--depth-unit mm, m or um"
+           : is_position(role) ? "--length-unit mm, m or um"
+                               : nullptr;
+}
+
+std::string units_wanted(Role role) {
+    const char kind = kind_of(role);
+    const std::string known = kind == 'f'   ? "N, mN, uN, kN, gf, kgf or lbf"
+                              : kind == 'l' ? "mm, m, cm, um or in"
+                                            : "s or ms";
+    const char* option = unit_option(role);
+    return known + (option != nullptr ? std::string(", or its unit stated by ") + option : std::string());
+}
+
+bool unit_stated(Role role, const ImportOptions& options) {
+    return (is_force(role) && options.force_unit) || (is_depth(role) && options.depth_unit) ||
+           (is_position(role) && options.length_unit);
 }
 
 double metres_of(LengthUnit unit) { return unit == LengthUnit::mm ? 1e-3 : unit == LengthUnit::m ? 1.0 : 1e-6; }
@@ -136,16 +174,11 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
         }
         return name.unit->to_SI;
     }
-    const std::string_view last = last_part(column);
-    const bool other =
-        states_a_unit(column) || std::find(kOtherUnits.begin(), kOtherUnits.end(), last) != kOtherUnits.end();
-    if (kind != ' ' && other) {
-        throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
-                               std::string("one in ") +
-                                   (kind == 'f'   ? "N, mN, uN, kN, gf, kgf or lbf"
-                                    : kind == 'l' ? "mm, m, cm, um or in"
-                                                  : "s or ms") +
-                                   ", or an option that states its unit");
+    if (const std::string_view other = other_unit(column); kind != ' ' && !other.empty()) {
+        throw files::bad_input(
+            file, "line 1",
+            "the column " + files::shown(column) + " as " + name_of(role) + ", in " + files::shown(other),
+            "one in " + units_wanted(role));
     }
     return kind == 'l' ? 1e-3 : 1.0;
 }
@@ -172,6 +205,46 @@ std::optional<std::size_t> usual_index(const KnownRole& known, const std::vector
         }
     }
     return std::nullopt;
+}
+
+// Returns the column that has one of the role's usual names before a unit that is not known.
+std::optional<std::size_t> other_unit_index(const KnownRole& known, const std::vector<std::string>& columns) {
+    for (const std::string_view usual : known.usual) {
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            if (!other_unit(columns[i]).empty() && bare_name(columns[i]) == usual) return i;
+        }
+    }
+    return std::nullopt;
+}
+
+// Takes columns of other units where the person states the unit, unless one of that kind is known by its own name: then
+// the option is meant for that one.
+void take_stated_units(const files::Table& table, const std::vector<SplitName>& names, const ImportOptions& options,
+                       Columns& columns) {
+    const Columns before = columns;
+    for (const KnownRole& known : known_roles()) {
+        const auto same_kind = [&](const KnownRole& other) {
+            return before.has(other.role) && is_force(other.role) == is_force(known.role) &&
+                   is_depth(other.role) == is_depth(known.role) && is_position(other.role) == is_position(known.role);
+        };
+        const auto& roles = known_roles();
+        if (!unit_stated(known.role, options) || std::any_of(roles.begin(), roles.end(), same_kind)) continue;
+        const auto index = other_unit_index(known, table.columns());
+        if (!index) continue;
+        const std::string& name = table.columns()[*index];
+        const double to_SI = unit_of(known.role, names[*index], options, name, table.file());
+        columns.of[static_cast<std::size_t>(known.role)] = Column{*index, to_SI, name, unit_named(known.role, to_SI)};
+    }
+}
+
+// Throws InputError if one of the columns would be the role's, were its unit known.
+void refuse_other_unit(const KnownRole& known, const files::Table& table) {
+    const auto index = other_unit_index(known, table.columns());
+    if (!index) return;
+    const std::string& name = table.columns()[*index];
+    throw files::bad_input(table.file(), "line 1",
+                           "the column " + files::shown(name) + ", in " + files::shown(other_unit(name)),
+                           "a column for " + std::string(known.name) + " in " + units_wanted(known.role));
 }
 
 std::string all_roles() {
@@ -204,6 +277,7 @@ Columns find_columns(const files::Table& table, const ImportOptions& options) {
         const double to_SI = unit_of(known.role, names[*index], options, name, table.file());
         columns.of[static_cast<std::size_t>(known.role)] = Column{*index, to_SI, name, unit_named(known.role, to_SI)};
     }
+    take_stated_units(table, names, options, columns);
     return columns;
 }
 
@@ -211,6 +285,9 @@ void need(const Columns& columns, const files::Table& table, std::initializer_li
     for (const Role role : roles) {
         if (columns.has(role)) continue;
         const KnownRole& known = known_roles()[static_cast<std::size_t>(role)];
+        refuse_other_unit(known, table);
+        if (role == Role::normal_force)  // in whose place a force along z may stand
+            refuse_other_unit(known_roles()[static_cast<std::size_t>(Role::force_z)], table);
         std::string found = "the columns";
         for (const std::string& column : table.columns()) found += " " + files::shown(column);
         std::string expected = "a column for " + std::string(known.name) + " (";
@@ -227,6 +304,9 @@ RecordingForm form_of(const Columns& columns, const files::Table& table) {
         return RecordingForm::sliding;
     if (columns.has(Role::point) || columns.has(Role::depth)) return RecordingForm::probing;
     if (columns.has(Role::z) && forces) return RecordingForm::probing;
+    for (const Role role : {Role::depth, Role::z, Role::normal_force, Role::force_z}) {
+        if (!columns.has(role)) refuse_other_unit(known_roles()[static_cast<std::size_t>(role)], table);
+    }
     std::string found = "the columns";
     for (const std::string& column : table.columns()) found += " " + files::shown(column);
     throw files::bad_input(table.file(), "line 1", found,
@@ -241,10 +321,12 @@ void check_force_size(double greatest_N, const Columns& columns, const ImportOpt
     constexpr double kMost_N = 200.0;
     if (greatest_N >= kLeast_N && greatest_N <= kMost_N) return;
     const Role role = columns.has(Role::normal_force) ? Role::normal_force : Role::force_z;
-    throw files::bad_input(
-        file, columns.has(role) ? columns[role].name : "",
-        "a greatest force of " + files::short_number(greatest_N) + " N",
-        "from 0.01 to 200 N on soft tissue: state the column's unit by --force-unit mN, or N if it is right");
+    const bool raw = columns.has(role) || (options.quantity == Quantity::force && !options.scale_stated);
+    throw files::bad_input(file, columns.has(role) ? columns[role].name : "",
+                           "a greatest force of " + files::short_number(greatest_N) + " N",
+                           std::string("from 0.01 to 200 N on soft tissue: ") +
+                               (raw ? "state the column's unit by --force-unit mN, or N if it is right"
+                                    : "another --scale, or --force-unit N if the force is right"));
 }
 
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file) {

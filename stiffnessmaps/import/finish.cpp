@@ -9,6 +9,7 @@
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/import/choices.h"
+#include "stiffnessmaps/import/columns.h"
 #include "stiffnessmaps/import/robust.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
@@ -42,6 +43,38 @@ void refuse_no_forces(const Map& map, const std::string& file) {
     if (typical_N > 0.0) return;
     throw files::bad_input(file, "", files::short_number(typical_N) + " N at the greatest depths (median)",
                            "forces that rise with depth (is the sign the other way round? --negate-force)");
+}
+
+// Below what was measured, filled forces would stay what they are above: nothing would resist.
+void refuse_empty_layers(const Map& map, const RecordedPoints& recorded, const std::string& file) {
+    for (std::size_t k = 0; k < map.n_depths(); ++k) {
+        const auto layer = map.normal_N.begin() + static_cast<std::ptrdiff_t>(k * map.n_cells());
+        if (std::any_of(layer, layer + static_cast<std::ptrdiff_t>(map.n_cells()),
+                        [](float force_N) { return std::isfinite(force_N); }))
+            continue;
+        const auto [least, most] = std::minmax_element(recorded.depth_m.begin(), recorded.depth_m.end());
+        const std::string reached = recorded.depth_m.empty()
+                                        ? std::string()
+                                        : ", from " + files::short_number(1e3 * static_cast<double>(*least)) + " to " +
+                                              files::short_number(1e3 * static_cast<double>(*most)) + " mm";
+        throw files::bad_input(file, "", "no force " + files::short_number(1e3 * map.depths_m[k]) + " mm deep",
+                               "depths that the recording reaches" + reached + " (--depths-mm)");
+    }
+}
+
+// The sizes that the map has in the end: no unit, scale or formula may have made them what soft tissue is not.
+void check_sizes(const Map& map, const ImportOptions& options, const std::string& file) {
+    std::vector<double> forces_N;
+    const std::size_t step = 1 + map.normal_N.size() / 1'000'000;
+    for (std::size_t i = 0; i < map.normal_N.size(); i += step) {
+        if (!std::isnan(map.normal_N[i])) forces_N.push_back(std::abs(static_cast<double>(map.normal_N[i])));
+    }
+    constexpr double kNearlyAll = 0.99;  // so that a single wild number does not suggest another unit
+    check_force_size(quantile(std::move(forces_N), kNearlyAll), Columns{}, options, file);
+    const double x_m = map.spacing_m[0] * static_cast<double>(map.n_x - 1);
+    const double y_m = map.spacing_m[1] * static_cast<double>(map.n_y - 1);
+    check_length_size(std::max(x_m, y_m), options, file);
+    check_depth_size(map.depths_m.back(), options, file);
 }
 
 // Closes the gaps between a cell's measured layers linearly along the cell's own curve.
@@ -175,6 +208,66 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
     return out;
 }
 
+namespace {
+
+// Returns a force of the map at a place, linear from 0 at the surface and between the depths; NaN if one of the numbers
+// that it needs is missing.
+double force_between(const Map& map, const std::vector<float>& forces, const Place& place, double depth_m) {
+    const auto above = std::lower_bound(map.depths_m.begin(), map.depths_m.end(), depth_m);
+    if (above == map.depths_m.end()) return std::numeric_limits<double>::quiet_NaN();
+    const auto k = static_cast<std::size_t>(above - map.depths_m.begin());
+    const double from_m = k > 0 ? map.depths_m[k - 1] : 0.0;
+    const double s = (depth_m - from_m) / (map.depths_m[k] - from_m);
+    double sum = 0.0;
+    for (int c = 0; c < 4; ++c) {
+        if (place.weight[c] == 0.0) continue;
+        const auto at = [&](std::size_t layer) {
+            return static_cast<double>(forces[layer * map.n_cells() + place.cell[c]]);
+        };
+        const double shallower_N = k > 0 ? at(k - 1) : 0.0;
+        sum += place.weight[c] * (shallower_N + s * (at(k) - shallower_N));
+    }
+    return sum;
+}
+
+double greatest_size_N(const std::vector<float>& forces) {
+    double out = 0.0;
+    for (const float force_N : forces) {
+        if (!std::isnan(force_N)) out = std::max(out, std::abs(static_cast<double>(force_N)));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::optional<ImportResidual> tangential_residual_of(const Map& map, const RecordedPoints& recorded) {
+    const Field field = make_field(map, {});
+    ImportResidual out;
+    std::vector<double> residuals;
+    for (const int along : {0, 1}) {
+        const std::vector<float>& forces = along == 0 ? map.tangential_x_N : map.tangential_y_N;
+        if (forces.empty() || recorded.tangential_N[along].empty()) continue;
+        out.greatest_N = std::max(out.greatest_N, greatest_size_N(forces));
+        for (std::size_t i = 0; i < recorded.x_m.size(); ++i) {
+            const Place place = place_at(field, {recorded.x_m[i], recorded.y_m[i]});
+            const double depth_m = static_cast<double>(recorded.depth_m[i]);
+            const double off_N = std::abs(force_between(map, forces, place, depth_m) -
+                                          static_cast<double>(recorded.tangential_N[along][i]));
+            if (!place.inside || std::isnan(off_N)) continue;
+            residuals.push_back(off_N);
+            if (off_N <= out.worst_N) continue;
+            out.worst_N = off_N;
+            out.worst_x_m = recorded.x_m[i];
+            out.worst_y_m = recorded.y_m[i];
+            out.worst_depth_m = depth_m;
+        }
+    }
+    if (residuals.empty()) return std::nullopt;
+    out.n = residuals.size();
+    out.median_N = median(std::move(residuals));
+    return out;
+}
+
 ImportResidual residual_of_numbers(const Map& map) {
     ImportResidual out;
     out.greatest_N = force_range(map).highest_N;
@@ -211,6 +304,8 @@ ImportResidual residual_of_numbers(const Map& map) {
 void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
                 const std::string& file, ImportReport& report) {
     refuse_no_forces(map, file);
+    refuse_empty_layers(map, recorded, file);
+    check_sizes(map, options, file);
     map.indenter = options.indenter;
     map.indenter_radius_m = options.indenter_radius_m;
     map.source.kind = SourceKind::recorded;
@@ -247,6 +342,7 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
                "--indenter-radius-mm");
     check_map(map, file);
     report.residual = recorded.x_m.empty() ? residual_of_numbers(map) : residual_of(map, recorded);
+    if (map.tangential == TangentialKind::recorded) report.tangential = tangential_residual_of(map, recorded);
 }
 
 }  // namespace palpa::stiffnessmaps

@@ -1,6 +1,5 @@
 #include "stiffnessmaps/import/gridding.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +11,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/grid.h"
+#include "stiffnessmaps/import/local_plane.h"
 #include "stiffnessmaps/import/robust.h"
 
 namespace palpa::stiffnessmaps {
@@ -195,48 +195,6 @@ void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, cons
 
 namespace {
 
-// Sums of a weighted linear regression over (1, u, v, w): u and v in radii, w in thicknesses of the thicker of the two
-// layers beside.
-struct PlaneSums {
-    double a[10] = {};  // upper triangle of the sum of weight b b^T
-    double f[4] = {};   // sum of weight b force
-    std::uint32_t n = 0;
-
-    void add(double weight, double u, double v, double w, double force) {
-        const double b[4] = {1.0, u, v, w};
-        int k = 0;
-        for (int i = 0; i < 4; ++i) {
-            const double wb = weight * b[i];
-            for (int j = i; j < 4; ++j) a[k++] += wb * b[j];
-            f[i] += wb * force;
-        }
-        ++n;
-    }
-};
-
-// Returns the value of the plane at u = v = w = 0; NaN if that were an extrapolation or there are fewer than `least`
-// samples.
-double plane_value(const PlaneSums& s, std::size_t least) {
-    constexpr double kOneSided = 0.5;
-    if (s.n < least || !(s.a[0] > 0.0)) return std::numeric_limits<double>::quiet_NaN();
-    for (int i = 1; i < 4; ++i) {
-        if (std::abs(s.a[i]) > kOneSided * s.a[0]) return std::numeric_limits<double>::quiet_NaN();
-    }
-    Eigen::Matrix4d A;
-    int k = 0;
-    for (int i = 0; i < 4; ++i) {
-        for (int j = i; j < 4; ++j) A(i, j) = A(j, i) = s.a[k++];
-    }
-    constexpr double kRidge = 1e-3;  // of the weight: with too few samples for a slope, their mean results
-    for (int i = 1; i < 4; ++i) A(i, i) += kRidge * s.a[0];
-    return A.ldlt().solve(Eigen::Vector4d(s.f[0], s.f[1], s.f[2], s.f[3]))(0);
-}
-
-struct MeanSums {
-    double weight = 0.0;
-    double force = 0.0;
-};
-
 struct LayerRange {
     double below_m;  // distance to the next shallower layer, where the weight reaches 0
     double above_m;  // distance to the next deeper layer
@@ -274,51 +232,33 @@ void visit_cells(const GridPlan& plan, double x_m, double y_m, Visit visit) {
     }
 }
 
-void weighted_means(const Samples& samples, const GridPlan& plan, const std::vector<float>& values,
-                    std::vector<float>& out) {
-    if (values.empty()) return;
+// The force at each cell and layer by local regression (or inverse distance); samples whose value is NaN do not count.
+template <class Value>
+std::vector<float> by_planes(const Samples& samples, const GridPlan& plan, const std::vector<Value>& values,
+                             bool inverse) {
+    if (values.empty()) return {};
     const auto ranges = layer_ranges(plan.depths_m);
-    constexpr double kEnough = 0.5;  // half the weight of one sample at the cell itself
-    for (std::size_t layer = 0; layer < plan.depths_m.size(); ++layer) {
-        std::vector<MeanSums> sums(plan.n_cells());
-        for (std::size_t s = 0; s < samples.size(); ++s) {
-            const double w = layers_off(plan.depths_m, ranges[layer], layer, samples.depth_m[s]);
-            if (std::isnan(values[s]) || !(std::abs(w) < 1.0)) continue;
-            visit_cells(plan, samples.x_m[s], samples.y_m[s], [&](std::size_t cell, double u, double v) {
-                const double near = 1.0 - u * u - v * v;
-                const double weight = near * near * (1.0 - std::abs(w));
-                sums[cell].weight += weight;
-                sums[cell].force += weight * static_cast<double>(values[s]);
-            });
-        }
-        for (const MeanSums& sum : sums) {
-            out.push_back(sum.weight > kEnough ? static_cast<float>(sum.force / sum.weight)
-                                               : static_cast<float>(kMissing));
-        }
-    }
-}
-
-std::vector<float> by_planes(const Samples& samples, const GridPlan& plan) {
-    const auto ranges = layer_ranges(plan.depths_m);
-    const bool inverse = plan.method == Gridding::inverse_distance;
     std::vector<float> out;
     for (std::size_t layer = 0; layer < plan.depths_m.size(); ++layer) {
+        const double thickness_m = std::max(ranges[layer].below_m, ranges[layer].above_m);
         std::vector<PlaneSums> sums(plan.n_cells());
         for (std::size_t s = 0; s < samples.size(); ++s) {
             const double w = layers_off(plan.depths_m, ranges[layer], layer, samples.depth_m[s]);
-            if (!(std::abs(w) < 1.0)) continue;
-            const double off =
-                (samples.depth_m[s] - plan.depths_m[layer]) / std::max(ranges[layer].below_m, ranges[layer].above_m);
+            const double value = static_cast<double>(values[s]);
+            if (std::isnan(value) || !(std::abs(w) < 1.0)) continue;
+            const double off = (samples.depth_m[s] - plan.depths_m[layer]) / thickness_m;
             const double carried = inverse ? plan.depths_m[layer] / samples.depth_m[s] : 1.0;
             visit_cells(plan, samples.x_m[s], samples.y_m[s], [&](std::size_t cell, double u, double v) {
                 const double rr = u * u + v * v;
                 const double near = inverse ? 1.0 / (rr + 0.01) : (1.0 - rr) * (1.0 - rr);
-                sums[cell].add(near * (1.0 - std::abs(w)), u, v, off, carried * samples.force_N[s]);
+                sums[cell].add(near * (1.0 - std::abs(w)), u, v, off, carried * value);
             });
         }
         for (const PlaneSums& sum : sums) {
-            const double plane = plane_value(sum, plan.least);
-            out.push_back(static_cast<float>(inverse && !std::isnan(plane) ? sum.f[0] / sum.a[0] : plane));
+            double force_N = kMissing;
+            if (sum.n >= plan.least && !one_sided(sum))
+                force_N = inverse ? sum.f[0] / sum.a[0] : plane_value(sum, plan.depths_m[layer] / thickness_m);
+            out.push_back(static_cast<float>(force_N));
         }
     }
     return out;
@@ -364,9 +304,11 @@ std::vector<float> by_medians(const Samples& samples, const GridPlan& plan) {
 
 Gridded grid_samples(const Samples& samples, const GridPlan& plan) {
     Gridded out;
-    out.normal_N = plan.method == Gridding::median ? by_medians(samples, plan) : by_planes(samples, plan);
-    weighted_means(samples, plan, samples.tangential_x_N, out.tangential_x_N);
-    weighted_means(samples, plan, samples.tangential_y_N, out.tangential_y_N);
+    const bool inverse = plan.method == Gridding::inverse_distance;
+    out.normal_N = plan.method == Gridding::median ? by_medians(samples, plan)
+                                                   : by_planes(samples, plan, samples.force_N, inverse);
+    out.tangential_x_N = by_planes(samples, plan, samples.tangential_x_N, false);
+    out.tangential_y_N = by_planes(samples, plan, samples.tangential_y_N, false);
     return out;
 }
 

@@ -68,12 +68,13 @@ struct Gridded {
 };
 
 // Each cell uses the samples within R = `radius_m` of it and within one layer's distance D of its depth, by
-//   plane             local linear regression over x, y and depth, weights (1 - r^2/R^2)^2 (1 - |d - d_k|/D)
+//   plane             local linear regression over x, y and depth (local_plane.h), weights
+//                     (1 - r^2/R^2)^2 (1 - |d - d_k|/D)
 //   inverse_distance  weighted mean of force d_k/d, weights (1 - |d - d_k|/D) / (r^2 + (0.1 R)^2)
 //   median            of force d_k/d over the samples that are nearest to this cell and layer
 // Nothing is extrapolated: a cell is missing if it has fewer than `least` samples. With plane and inverse_distance it
 // is also missing if they lie on average more than half the radius to one side, or more than half a layer deeper or
-// shallower. Tangential forces are weighted means with the weights of plane.
+// shallower. Tangential forces are always brought onto the grid by plane.
 Gridded grid_samples(const Samples& samples, const GridPlan& plan);
 
 // Returns whether a place lies in `region_m` (x from, x to, y from, y to, as in --region-mm); without a region every

@@ -82,18 +82,6 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
     return map;
 }
 
-// Below what was measured, filled forces would stay what they are above: nothing would resist.
-void check_layers(const Map& map, const std::string& file) {
-    for (std::size_t k = 0; k < map.n_depths(); ++k) {
-        const auto layer = map.normal_N.begin() + static_cast<std::ptrdiff_t>(k * map.n_cells());
-        if (std::any_of(layer, layer + static_cast<std::ptrdiff_t>(map.n_cells()),
-                        [](float force_N) { return std::isfinite(force_N); }))
-            continue;
-        throw files::bad_input(file, "", "no force " + files::short_number(1e3 * map.depths_m[k]) + " mm deep",
-                               "depths that the recording reaches (--depths-mm)");
-    }
-}
-
 }  // namespace
 
 Map import_recording(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
@@ -101,7 +89,6 @@ Map import_recording(const std::vector<fs::path>& files, const ImportOptions& op
     const bool arrays = options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
     Map map = arrays ? import_matrices(files, options, report) : import_tables(files, options, report);
     map.nodules_known = false;  // a recording does not say
-    check_layers(map, files.front().string());
     map.name = options.name.empty() ? files.front().stem().string() : options.name;
     map.source.from = files.front().filename().string();
     for (std::size_t i = 1; i < files.size(); ++i) map.source.from += ", " + files[i].filename().string();

@@ -183,12 +183,11 @@ double greatest(const Stack& stack) {
     return quantile(std::move(values), 0.99);
 }
 
+// The forces that come of stiffnesses and moduli are checked at the end, as all are.
 void check_size(const Stack& stack, const ImportOptions& options) {
     const double most = greatest(stack);
     if (options.scale_stated) return;
-    if (options.quantity == Quantity::force) {
-        check_force_size(most, Columns{}, options, stack.first_file);
-    } else if (options.quantity == Quantity::stiffness && !(most >= 1.0 && most <= 1e6)) {
+    if (options.quantity == Quantity::stiffness && !(most >= 1.0 && most <= 1e6)) {
         throw files::bad_input(stack.first_file, "", "stiffnesses up to " + files::short_number(1e-3 * most) + " N/mm",
                                "from 0.001 to 1000 N/mm: state the unit by --scale, N/mm for one of the file's");
     } else if (options.quantity == Quantity::young && !(most >= 50.0 && most <= 1e7)) {
@@ -246,6 +245,20 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
     return std::move(stack.values);
 }
 
+// The options for arrays name their units; a stated unit only confirms one.
+void refuse_units(const ImportOptions& options) {
+    const auto not_mm = [](const std::optional<LengthUnit>& unit) { return unit && *unit != LengthUnit::mm; };
+    if (not_mm(options.length_unit))
+        throw files::bad_input("--length-unit", "", "another unit than mm for arrays",
+                               "mm, as --spacing-mm and --origin-mm have");
+    if (not_mm(options.depth_unit))
+        throw files::bad_input("--depth-unit", "", "another unit than mm for arrays",
+                               "mm, as --depths-mm and the files' names have");
+    if (options.force_unit == ForceUnit::mN && options.quantity != Quantity::force)
+        throw files::bad_input("--force-unit", "", "mN for stiffnesses or Young's moduli",
+                               "N, to confirm the forces that come of them, or another --scale");
+}
+
 void note_choices(const ImportOptions& options, bool from_names, const Stack& stack, MapSource& source) {
     add_choice(source, "form", "matrices", "arrays, by their first bytes", "--form", options.form.has_value());
     add_choice(source, "spacing_mm", choice_mm({options.spacing_m[0], options.spacing_m[1]}), "", "--spacing-mm", true);
@@ -296,6 +309,7 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
         throw files::bad_input(normal_files.front().string(), "", "an array without a scale",
                                "the distance between its numbers: --spacing-mm DX,DY");
     }
+    refuse_units(options);
     Stack stack;
     for (std::size_t i = 0; i < normal_files.size(); ++i) {
         if (options.progress) options.progress("reading", static_cast<double>(i) / static_cast<double>(files.size()));

@@ -99,7 +99,8 @@ struct ImportReport {
     std::size_t missing_cells = 0;    // of the grid
     double median_offset_N = 0.0;     // force at contact, which is subtracted point by point
     ImportResidual residual;
-    std::vector<std::string> notes;  // what a person should know, in plain words
+    std::optional<ImportResidual> tangential;  // |map - recording| of measured tangential forces of a sliding tool
+    std::vector<std::string> notes;            // what a person should know, in plain words
 };
 
 const char* name_of(RecordingForm form);

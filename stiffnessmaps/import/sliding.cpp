@@ -220,10 +220,20 @@ std::vector<double> choose_depths(const Samples& samples, const ImportOptions& o
     const int n = options.layers.value_or(kLayers);
     constexpr double kNearlyAll = 0.9;
     const double greatest_m = quantile(samples.depth_m, kNearlyAll);
-    for (int k = 1; k <= n; ++k) depths_m.push_back(greatest_m * k / n);
+    const double least_m = quantile(samples.depth_m, 1.0 - kNearlyAll);
+    constexpr double kHardlyAny = 0.02;  // a layer of fewer samples is empty nearly everywhere
+    const bool shallow = quantile(samples.depth_m, kHardlyAny) <= greatest_m / n;
+    for (int k = 1; k <= n; ++k) {
+        depths_m.push_back(shallow || n == 1 ? greatest_m * k / n
+                                             : least_m + (greatest_m - least_m) * (k - 1) / (n - 1));
+    }
     add_choice(source, "layers", static_cast<double>(n), "enough for a curve", "--layers", options.layers.has_value());
     add_choice(source, "depths_mm", choice_mm(depths_m),
-               "equal steps to the depth that 90 % of the samples do not exceed", "--depths-mm");
+               shallow ? "equal steps to the depth that 90 % of the samples do not exceed"
+                       : "the recording hardly reaches the first of equal steps from the surface: equal steps between "
+                         "the depths that 10 and 90 % of "
+                         "the samples do not exceed",
+               "--depths-mm");
     return depths_m;
 }
 
@@ -353,6 +363,8 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     recorded.reserve(pressed.size());
     for (std::size_t i = 0; i < pressed.size(); ++i)
         recorded.add(pressed.x_m[i], pressed.y_m[i], pressed.depth_m[i], pressed.force_N[i]);
+    recorded.tangential_N[0] = std::move(pressed.tangential_x_N);
+    recorded.tangential_N[1] = std::move(pressed.tangential_y_N);
     pressed = {};
     finish_map(map, recorded, measured_tangential, options, file, report);
     return map;

@@ -2,8 +2,10 @@
 #include <doctest/doctest.h>
 #include <random>
 
+#include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/import/finish.h"
 #include "stiffnessmaps/import/gridding.h"
+#include "stiffnessmaps/import/local_plane.h"
 #include "stiffnessmaps/import/robust.h"
 #include "tests/close_to.h"
 #include "tests/stiffnessmaps/test_maps.h"
@@ -78,7 +80,7 @@ TEST_CASE("gridding: a linear field comes back exactly, and nothing is extrapola
         const std::size_t cell = i % plan.n_cells();
         const double wanted =
             0.2 + 10.0 * plan.x.at(cell % 21) - 20.0 * plan.y.at(cell / 21) + 400.0 * plan.depths_m[i / plan.n_cells()];
-        CHECK(std::abs(static_cast<double>(out.normal_N[i]) - wanted) < 4e-3);
+        CHECK(std::abs(static_cast<double>(out.normal_N[i]) - wanted) < 1e-6);
         CHECK(plan.x.at(cell % 21) > -1e-3);
         CHECK(plan.x.at(cell % 21) < 21e-3);
     }
@@ -86,6 +88,94 @@ TEST_CASE("gridding: a linear field comes back exactly, and nothing is extrapola
     // no sample is deeper than 3 mm: the layer at 4 mm stays empty
     for (std::size_t cell = 0; cell < plan.n_cells(); ++cell)
         CHECK(std::isnan(out.normal_N[2 * plan.n_cells() + cell]));
+}
+
+namespace {
+
+// Lines along x, 1 mm apart, there and back, on which depth rises and falls: place and depth go together along each.
+// Force rises by 0.4 N/mm, the tangential force (only on the way there) by 0.12 N/mm.
+Samples sliding_samples(double noise_N, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    Samples samples;
+    double t_s = 0.0;
+    for (int line = 0; line <= 30; ++line) {
+        for (int i = 0; i <= 500; ++i) {
+            t_s += 0.005;
+            const double depth_m = 1.55e-3 - 1.5e-3 * std::cos(2.0 * 3.14159265 * t_s);
+            samples.x_m.push_back(1e-4 * (line % 2 == 0 ? i : 500 - i));
+            samples.y_m.push_back(1e-3 * line);
+            samples.depth_m.push_back(depth_m);
+            samples.force_N.push_back(400.0 * depth_m + noise_N * noise(random));
+            const double back_N = 120.0 * depth_m + noise_N * noise(random);
+            samples.tangential_x_N.push_back(static_cast<float>(line % 2 == 0 ? back_N : kMissing));
+        }
+    }
+    return samples;
+}
+
+struct WorstOff {
+    double normal_N = 0.0;
+    double tangential_N = 0.0;
+    std::size_t n_normal = 0;
+    std::size_t n_tangential = 0;
+};
+
+WorstOff worst_off(double noise_N, int layers, unsigned seed) {
+    GridPlan plan;
+    plan.x = {0.0, 2e-3, 26};
+    plan.y = {0.0, 2e-3, 16};
+    for (int k = 1; k <= layers; ++k) plan.depths_m.push_back(2.977e-3 * k / layers);
+    plan.radius_m = 2e-3;
+    plan.least = 3;
+    const Gridded out = grid_samples(sliding_samples(noise_N, seed), plan);
+    WorstOff worst;
+    for (std::size_t i = 0; i < out.normal_N.size(); ++i) {
+        const double depth_m = plan.depths_m[i / plan.n_cells()];
+        const double normal_N = std::abs(static_cast<double>(out.normal_N[i]) - 400.0 * depth_m);
+        const double tangential_N = std::abs(static_cast<double>(out.tangential_x_N[i]) - 120.0 * depth_m);
+        worst.n_normal += !std::isnan(normal_N);
+        worst.n_tangential += !std::isnan(tangential_N);
+        worst.normal_N = std::fmax(worst.normal_N, normal_N);
+        worst.tangential_N = std::fmax(worst.tangential_N, tangential_N);
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("gridding: a force linear in depth comes back exactly from lines on which depth and place go together") {
+    for (const int layers : {3, 8}) {
+        CAPTURE(layers);
+        const WorstOff worst = worst_off(0.0, layers, 1);
+        CHECK(worst.n_normal > 500);
+        CHECK(worst.n_tangential > 250);
+        CHECK(worst.normal_N < 1e-6);               // a float of 1 N
+        CHECK(worst.tangential_N < 1e-5);           // of forces that are floats
+        for (const unsigned seed : {1u, 2u, 3u}) {  // and no slope that only noise made is followed
+            const double noise_N = 0.02;
+            const WorstOff noisy = worst_off(noise_N, layers, seed);
+            CHECK(noisy.normal_N < 2.0 * noise_N);
+            CHECK(noisy.tangential_N < 2.0 * noise_N);
+        }
+    }
+}
+
+TEST_CASE(
+    "gridding: what samples do not tell of a plane is no slope over the place, and force in proportion to depth") {
+    PlaneSums sums;
+    for (int i = 0; i < 12; ++i) sums.add(1.0, 0.1 * (i % 4), 0.2, 0.3, 2.6);  // all at one depth, one and a half radii
+    CHECK(plane_value(sums, 1.0) == close_to(2.0));
+    CHECK_FALSE(one_sided(sums));
+    CHECK(one_sided(PlaneSums{}));
+    PlaneSums deeper;
+    for (int i = 0; i < 12; ++i) deeper.add(1.0, 0.1 * (i % 4), 0.2, 0.6, 2.6);
+    CHECK(one_sided(deeper));
+    // five samples in general position tell a plane that is not in proportion to depth
+    PlaneSums five;
+    const double at[5][3] = {{0.5, 0, 0.2}, {-0.4, 0.3, -0.1}, {0, -0.5, 0.3}, {0.1, 0.4, 0.4}, {-0.3, -0.2, -0.4}};
+    for (const auto& p : at) five.add(0.7, p[0], p[1], p[2], 1.0 + 0.3 * p[0] - 0.2 * p[1] + 5.0 * p[2]);
+    CHECK(plane_value(five, 2.0) == close_to(1.0));
 }
 
 TEST_CASE("gridding: the filled copy has no gap, keeps what was measured, and goes on as its neighbours do") {

@@ -163,6 +163,51 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
                    "expected from 0.001 to 1000 N/mm"));
 }
 
+TEST_CASE("matrices: sizes that soft tissue does not have are refused after scale and formula too, unless confirmed") {
+    const TemporaryFolder folder;
+    write_text_whole(folder / "a_2mm.csv", matrix(20.0));
+    const auto said = [&](const ImportOptions& options) {
+        ImportReport report;
+        return message_of([&] { import_recording({folder / "a_2mm.csv"}, options, report); });
+    };
+    ImportOptions scaled = spaced();
+    scaled.scale_stated = true;
+    scaled.scale = 1e3;
+    CHECK(contains(said(scaled), "N, expected from 0.01 to 200 N on soft tissue: another --scale, or --force-unit N"));
+    scaled.scale = 1e-8;
+    CHECK(contains(said(scaled), "expected from 0.01 to 200 N"));
+    scaled.force_unit = ForceUnit::N;
+    CHECK(said(scaled) == "");
+
+    ImportOptions young = spaced();
+    young.quantity = Quantity::young;
+    young.scale = 1e7;
+    young.scale_stated = true;
+    young.depths_m = {1e-3, 2e-3};
+    CHECK(contains(said(young), "a greatest force of"));
+    young.scale = 1e3;
+    CHECK(said(young) == "");
+    young.force_unit = ForceUnit::mN;
+    CHECK(contains(said(young), "found mN for stiffnesses or Young's moduli"));
+
+    ImportOptions small = spaced();
+    small.spacing_m = {0.05e-3, 0.05e-3};
+    CHECK(contains(said(small), "places that extend over 0.15 mm, expected from 1 to 1000 mm"));
+    small.length_unit = LengthUnit::mm;
+    CHECK(said(small) == "");
+    small.length_unit = LengthUnit::m;
+    CHECK(contains(said(small), "--length-unit: found another unit than mm for arrays"));
+
+    ImportOptions deep = spaced();
+    for (const double depth_m : {1e-6, 0.4}) {
+        deep.depths_m = {depth_m};
+        deep.depth_unit.reset();
+        CHECK(contains(said(deep), "expected from 0.05 to 100 mm: state the unit of the depths by --depth-unit"));
+        deep.depth_unit = LengthUnit::mm;
+        CHECK(said(deep) == "");
+    }
+}
+
 TEST_CASE("matrices: a slice at many depths holds no more numbers than files may") {
     const TemporaryFolder folder;
     write_npy(folder / "k.npy", {1000, 1000}, std::vector<float>(1'000'000, 2.0f));

@@ -246,8 +246,36 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
         CHECK(contains(message_of([&] { imported(unknown, other); }), "expected one in N"));
     }
     CHECK(contains(message_of([&] { imported(in_gf, options); }), "expected one in N, mN, uN, kN, gf, kgf or lbf"));
+    options.force_unit = ForceUnit::mN;
+    CHECK(imported(in_gf, options).normal_N.back() == close_to(1.2f));
+    options.force_unit.reset();
     options.columns = {{"x", "Load_mN"}};
     CHECK(contains(message_of([&] { imported(text, options); }), "found the column 'Load_mN' as x, expected a length"));
+}
+
+TEST_CASE("probing: an option states the unit of a column whose own unit is not known, and the refusal names both") {
+    const auto text_of = [](const std::string& force, const std::string& other) {
+        std::string text = "x_mm,y_mm,depth_mm," + force + "," + other + "\n";
+        for (int p = 0; p < 4; ++p) {
+            for (int k = 0; k < 4; ++k)
+                text += std::to_string(3 * (p % 2)) + "," + std::to_string(3 * (p / 2)) + "," + std::to_string(k) +
+                        "," + std::to_string(400 * k) + "," + std::to_string(5 * k) + "\n";
+        }
+        return text;
+    };
+    ImportOptions options;
+    options.force_unit = ForceUnit::mN;
+    for (const char* name : {"force_oz", "Force/g", "Fz [oz]", "load (counts)"}) {
+        CAPTURE(name);
+        CHECK(imported(text_of(name, "n"), options).normal_N.back() == close_to(1.2f));
+        CAPTURE(refusal(text_of(name, "n")));
+        CHECK(contains(refusal(text_of(name, "n")), "found the column '" + std::string(name) + "', in '"));
+        CHECK(contains(refusal(text_of(name, "n")), "--force-unit N or mN"));
+    }
+    CHECK(contains(refusal(text_of("force_oz", "n")), "in 'oz', expected a column for fn in N, mN,"));
+    // where a force is known by its name, the option is meant for that one
+    CHECK(imported(text_of("fz", "load_V"), options).normal_N.back() == close_to(1.2f));
+    CHECK(imported(text_of("fz_mN", "load_V")).normal_N.back() == close_to(1.2f));
 }
 
 TEST_CASE("probing: height and force in the air are enough: contact is found, the tilt removed") {
