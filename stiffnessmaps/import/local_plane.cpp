@@ -48,7 +48,8 @@ Moments moments_of(const PlaneSums& s) {
 bool one_sided(const PlaneSums& s) {
     constexpr double kOneSided = 0.5;
     if (!(s.a[0] > 0.0)) return true;
-    return std::any_of(s.a + 1, s.a + 4, [&](double sum) { return std::abs(sum) > kOneSided * s.a[0]; });
+    const double beside = std::hypot(s.a[1], s.a[2]);
+    return beside > kOneSided * s.a[0] || std::abs(s.a[3]) > kOneSided * s.a[0];
 }
 
 double plane_value(const PlaneSums& s, double depth_w) {

@@ -171,6 +171,9 @@ TEST_CASE(
     PlaneSums deeper;
     for (int i = 0; i < 12; ++i) deeper.add(1.0, 0.1 * (i % 4), 0.2, 0.6, 2.6);
     CHECK(one_sided(deeper));
+    PlaneSums beside;  // off along both axes, by more than half the radius together
+    for (int i = 0; i < 12; ++i) beside.add(1.0, 0.4, 0.4, 0.0, 2.6);
+    CHECK(one_sided(beside));
     // five samples in general position tell a plane that is not in proportion to depth
     PlaneSums five;
     const double at[5][3] = {{0.5, 0, 0.2}, {-0.4, 0.3, -0.1}, {0, -0.5, 0.3}, {0.1, 0.4, 0.4}, {-0.3, -0.2, -0.4}};
