@@ -1,6 +1,7 @@
 #pragma once
 // Figures of maps, by gnuplot: forces in viridis (perceptually uniform, readable for colour-blind people), differences
-// in blue to red around white, both axes in mm and to the same scale, hatching where nothing was measured.
+// in blue to red around white, both axes in mm and to the same scale, hatching where nothing was measured, or where the
+// force of the depth slice is not reached.
 
 #include <Eigen/Core>
 #include <filesystem>

@@ -120,14 +120,18 @@ Image nodules_image(const stiffnessmaps::Map& map, const stiffnessmaps::Detectio
 
 Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, double force_N) {
     Image im = image_of(map);
-    im.title = "Depth at " + files::short_number(force_N) + " N";
-    im.unit = "mm";
+    bool all_reached = true;
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
         const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(
             field, stiffnessmaps::place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
+        const bool measured = field.measured[cell] > 0.0;
+        all_reached = all_reached && !(measured && answer.saturated);
         // a depth beyond what was measured is not known
-        im.values.push_back(field.measured[cell] > 0.0 && !answer.saturated ? 1e3 * answer.depth_m : kNaN);
+        im.values.push_back(measured && !answer.saturated ? 1e3 * answer.depth_m : kNaN);
     }
+    im.title =
+        "Depth at " + files::short_number(force_N) + " N" + (all_reached ? "" : " (hatched: not reached or measured)");
+    im.unit = "mm";
     im.span = span_of(im.values);
     return im;
 }

@@ -15,7 +15,7 @@ Image stiffness_image(const stiffnessmaps::Map& map);
 // Returns the stiffness, with the map's nodules and the found regions drawn over it.
 Image nodules_image(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script);
 
-// Returns the depth that a force reaches in each cell.
+// Returns the depth that a force reaches in each cell; the title says so where it is not reached.
 Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, double force_N);
 
 // Returns the force along x through a row of cells, down to the deepest layer.
