@@ -290,8 +290,8 @@ double height_m(const Mesh& mesh, const std::vector<int>& nodes) {
     return least_m;
 }
 
-// Sets area and cells across the tool. Where the mesh is too coarse to tell the area, it is limited to the section of the
-// tool at the surface.
+// Sets area and cells across the tool. No area is larger than the tool's whole section; where the mesh is too coarse to tell
+// the area, it is limited to the section of the tool at the surface.
 void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model, IndenterContact& out) {
     const Indenter& tool = model.indenter->indenter;
     std::vector<int> nodes;
@@ -313,9 +313,9 @@ void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model,
             out.ends_on_nodes |= std::abs(2.0 * off_m - tool.length_m) < 1e-6 * tool.length_m;
         }
     }
-    if (out.cells_across_radius >= kFewestCells && out.cells_along_length.value_or(kFewestCells) >= kFewestCells)
-        return;
-    const double d = std::min(out.depth_m, tool.radius_m);
+    const bool fine =
+        out.cells_across_radius >= kFewestCells && out.cells_along_length.value_or(kFewestCells) >= kFewestCells;
+    const double d = fine ? tool.radius_m : std::min(out.depth_m, tool.radius_m);
     const double half_m2 = d * (2.0 * tool.radius_m - d);
     out.area_m2 =
         std::min(out.area_m2, along_y ? 2.0 * std::sqrt(half_m2) * tool.length_m : std::numbers::pi * half_m2);

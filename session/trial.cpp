@@ -57,10 +57,19 @@ void measure_press(const scene::State& state, double now_s, Trial& trial) {
     trial.pressed_N = state.touch.force_N;
 }
 
+// A device that reports changes alone says nothing while a press is held: its last force lasts until it is lifted.
+void end_press(Trial& trial) {
+    if (!trial.pressing) return;
+    const double held_s = trial.now_s - trial.pressed_at_s;
+    trial.pressed_s += held_s;
+    trial.impulse_Ns += held_s * trial.pressed_N;
+    trial.pressing = false;
+}
+
 void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
     if (!state.answered) return;  // another pointer's sample, or one from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
-    if (!pressing) trial.pressing = false;
+    if (!pressing) end_press(trial);
     if (!state.touch.down) return;
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
     if (!trial.touched_s) trial.touched_s = trial.now_s;

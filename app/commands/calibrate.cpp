@@ -301,11 +301,12 @@ void compare(const CompareProfilesArguments& arguments) {
     for (std::size_t i = 0; i < share.size(); i += 2) {
         const double F_a = a_N[i].get<double>();
         const double F_b = b_N[i].get<double>();
-        std::printf("%5.0f %%  %10s N %10s N %8s %%\n", 100.0 * share[i].get<double>(),
-                    files::short_number(F_a).c_str(), files::short_number(F_b).c_str(),
-                    files::short_number(200.0 * (F_b - F_a) / (F_a + F_b)).c_str());
+        const std::string apart_percent =
+            F_a + F_b > 0.0 ? files::short_number(200.0 * (F_b - F_a) / (F_a + F_b)) + " %" : "-";
+        std::printf("%5.0f %%  %10s N %10s N %10s\n", 100.0 * share[i].get<double>(), files::short_number(F_a).c_str(),
+                    files::short_number(F_b).c_str(), apart_percent.c_str());
     }
-    std::printf("apart by %s %% (median), at most %s %% at %s %% of the range\n",
+    std::printf("apart, as a share of the mean of both, by %s %% (median), at most %s %% at %s %% of the range\n",
                 files::short_number(100.0 * median).c_str(), files::short_number(100.0 * greatest).c_str(),
                 files::short_number(100.0 * at).c_str());
     if (a.level != b.level)

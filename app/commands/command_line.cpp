@@ -129,8 +129,9 @@ int run_command_line(int argc, char** argv) {
     // a closed pipe, and a file that may grow no more, are reported as any output that cannot be written
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);
-    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.",
-                 "palpa");
+    CLI::App app(
+        "Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene last chosen in its menu.",
+        "palpa");
     app.set_version_flag("--version", "palpa " PALPA_VERSION);
     app.require_subcommand(1);
     add_run(app);

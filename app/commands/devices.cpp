@@ -83,7 +83,9 @@ void print_seen(platform::Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
     std::printf("%s: %lld samples, %lld of them touching\n", std::string(name_of(which)).c_str(),
                 static_cast<long long>(tool.samples), static_cast<long long>(tool.touching));
-    if (tool.gap_count > 0)
+    if (!knows_gaps(tool))
+        std::printf("  too few samples one after the other to tell how many come in a second\n");
+    else
         std::printf(
             "  %.4g a second while it moves; from one to the next %.3g ms (median), %.3g ms (worst; rests over %g s "
             "left out)\n",

@@ -143,8 +143,8 @@ void add_run(CLI::App& app) {
     auto options = std::make_shared<RunOptions>();
     CLI::App* command = app.add_subcommand("run", "Open the app on a scene or a map, or replay a trace");
     command->add_option("SCENE", options->scene,
-                        "scene JSON, map folder or the name of a shipped one (default: the scene of last time; "
-                        "the default scene at first and for replays)");
+                        "scene JSON, map folder or the name of a shipped one (default: the one last chosen "
+                        "in the menu; the default scene at first and for replays)");
     command->add_option("--replay", options->trace, "trace to replay instead of live input");
     command->add_flag("--headless", options->headless,
                       "open no window: replay the trace as fast as possible, then exit");

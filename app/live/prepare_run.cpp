@@ -87,8 +87,8 @@ void load(const RunOptions& options, App& app) {
 void know_screen(const platform::Window& window, App& app) {
     app.notices.screen_name = window.screen_name();
     const auto known = app.settings.px_per_mm.find(app.notices.screen_name);
-    if (std::isfinite(window.touch_px_per_mm())) app.view.card_px_per_mm = window.touch_px_per_mm();
-    if (known != app.settings.px_per_mm.end()) app.view.card_px_per_mm = app.notices.px_per_mm = known->second;
+    if (std::isfinite(window.touch_px_per_mm())) app.view.scale.card_px_per_mm = window.touch_px_per_mm();
+    if (known != app.settings.px_per_mm.end()) app.view.scale.card_px_per_mm = app.notices.px_per_mm = known->second;
 }
 
 namespace {

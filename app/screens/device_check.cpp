@@ -79,8 +79,10 @@ files::Json range_json(const Range& range) {
 files::Json seen_json(platform::Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
     const ClockDrift drift = clock_drift(tool);
-    files::Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
-    json["gap_ms"] = {{"median", 1e3 * median_gap_s(tool)}, {"worst", 1e3 * worst_gap_s(tool)}};
+    files::Json json{
+        {"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", files::number_or_null(rate_Hz(tool))}};
+    json["gap_ms"] = {{"median", files::number_or_null(1e3 * median_gap_s(tool))},
+                      {"worst", files::number_or_null(1e3 * worst_gap_s(tool))}};
     json["pressure"] = name_of(platform::pressure_kind(check.pressure, which));
     json["pressure_range"] = range_json(tool.pressure);
     json["pressure_raw_range"] = range_json(tool.pressure_raw);
@@ -123,13 +125,22 @@ const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check) {
     return check.tools[static_cast<std::size_t>(tool)];
 }
 
-double rate_Hz(const ToolCheck& tool) {
-    return tool.gaps_s > 0.0 ? static_cast<double>(tool.gap_count) / tool.gaps_s : 0.0;
+bool knows_gaps(const ToolCheck& tool) {
+    constexpr std::int64_t kFewest = 5;  // two samples of one press may come together
+    return tool.gap_count >= kFewest && tool.gaps_s > 0.0;
 }
 
-double median_gap_s(const ToolCheck& tool) { return 1e-9 * tool.gaps.quantile_ns(0.5); }
+double rate_Hz(const ToolCheck& tool) {
+    return knows_gaps(tool) ? static_cast<double>(tool.gap_count) / tool.gaps_s : platform::kMissing;
+}
 
-double worst_gap_s(const ToolCheck& tool) { return 1e-9 * tool.gaps.worst_ns(); }
+double median_gap_s(const ToolCheck& tool) {
+    return knows_gaps(tool) ? 1e-9 * tool.gaps.quantile_ns(0.5) : platform::kMissing;
+}
+
+double worst_gap_s(const ToolCheck& tool) {
+    return knows_gaps(tool) ? 1e-9 * tool.gaps.worst_ns() : platform::kMissing;
+}
 
 std::int64_t distinct_pressures(const ToolCheck& tool) { return static_cast<std::int64_t>(tool.values.count()); }
 

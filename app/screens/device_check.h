@@ -79,7 +79,9 @@ void observe(const platform::Sample& sample, DeviceCheck& check);
 
 const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check);
 
-// Returns 0 before there are two samples. Gaps are measured by the device's own clock if it has one.
+// Whether enough samples came one after the other. Gaps are measured by the device's own clock if it has one.
+bool knows_gaps(const ToolCheck& tool);
+// NaN as long as they are not known.
 double rate_Hz(const ToolCheck& tool);
 double median_gap_s(const ToolCheck& tool);  // to 2 %
 double worst_gap_s(const ToolCheck& tool);

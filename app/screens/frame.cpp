@@ -41,7 +41,7 @@ bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes
     if (const auto* checking = std::get_if<CheckingDevices>(&shown.doing)) {
         draw_device_screen(shown, *checking, gui, wishes);
     } else if (std::holds_alternative<MeasuringScreen>(shown.doing)) {
-        draw_scale_screen(shown, gui, view.card_px_per_mm, wishes);
+        draw_scale_screen(shown, gui, view.scale, wishes);
     } else if (const auto* calibrating = std::get_if<Calibrating>(&shown.doing)) {
         draw_calibrate_screen(shown, gui, *calibrating->form, wishes);
     } else if (std::holds_alternative<BrowsingMaps>(shown.doing)) {

@@ -160,9 +160,10 @@ void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
         ImGui::TableNextColumn();
         wrapped_text(stage.error);
         ImGui::TableNextColumn();
-        ImGui::Text("%.2f", 1e-3 * meter.quantile_ns(0.5));
+        const auto us = [&](double q) { return meter.timed() > 0 ? fixed(1e-3 * meter.quantile_ns(q), 2) : "-"; };
+        ImGui::TextUnformatted(us(0.5).c_str());
         ImGui::TableNextColumn();
-        ImGui::Text("%.2f", 1e-3 * meter.quantile_ns(0.99));
+        ImGui::TextUnformatted(us(0.99).c_str());
         ImGui::TableNextColumn();
         ImGui::Text("%lld", static_cast<long long>(meter.calls()));
     }

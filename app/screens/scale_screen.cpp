@@ -77,6 +77,26 @@ void step_buttons(const Gui& gui, double& px_per_mm) {
     }
 }
 
+// What is typed stays in the field until it is a scale, or until the card is moved. Returns false while it is none; the card
+// then stays as it was.
+bool type_scale(const Gui& gui, ScaleForm& form) {
+    form.card_px_per_mm = std::clamp(form.card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
+    if (form.card_px_per_mm != form.taken_px_per_mm) form.typed_px_per_mm = form.card_px_per_mm;
+    ImGui::SetNextItemWidth(40.0f * gui.mm());
+    push_touchable_frame(2.0f, gui);
+    number_field(words::kPxPerMm, form.typed_px_per_mm, "%.3f");
+    ImGui::PopStyleVar();
+    const bool good = form.typed_px_per_mm >= kLeast_px_per_mm && form.typed_px_per_mm <= kMost_px_per_mm;
+    if (good) {
+        form.card_px_per_mm = form.typed_px_per_mm;
+    } else {
+        ImGui::SameLine();
+        warning_paragraph(words::filled(words::kNumberFromTo, {fixed(kLeast_px_per_mm, 0), fixed(kMost_px_per_mm, 0)}));
+    }
+    form.taken_px_per_mm = form.card_px_per_mm;
+    return good;
+}
+
 }  // namespace
 
 int ruler_step_mm(float px_per_mm, float number_px) {
@@ -87,29 +107,18 @@ int ruler_step_mm(float px_per_mm, float number_px) {
     return 80;
 }
 
-void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes) {
+void draw_scale_screen(const Shown& shown, Gui& gui, ScaleForm& form, Wishes& wishes) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     begin_panel("scale", {0.0f, 0.0f, screen.x, screen.y}, gui);
     wrapped_text(words::kHoldCard);
-    step_buttons(gui, card_px_per_mm);
+    step_buttons(gui, form.card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
-        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) card_px_per_mm *= 1.002;
-        if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) card_px_per_mm /= 1.002;
+        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) form.card_px_per_mm *= 1.002;
+        if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) form.card_px_per_mm /= 1.002;
     }
-    card_px_per_mm = std::clamp(card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
-    ImGui::SetNextItemWidth(40.0f * gui.mm());
-    push_touchable_frame(2.0f, gui);
-    double typed_px_per_mm = card_px_per_mm;
-    number_field(words::kPxPerMm, typed_px_per_mm, "%.3f");
-    ImGui::PopStyleVar();
-    const bool good = typed_px_per_mm >= kLeast_px_per_mm && typed_px_per_mm <= kMost_px_per_mm;
-    if (good) card_px_per_mm = typed_px_per_mm;  // else the card stays as it was
-    if (!good) {
-        ImGui::SameLine();
-        warning_paragraph(words::filled(words::kNumberFromTo, {fixed(kLeast_px_per_mm, 0), fixed(kMost_px_per_mm, 0)}));
-    }
+    const bool good = type_scale(gui, form);
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
-    if (big_button(words::kSave, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = card_px_per_mm;
+    if (big_button(words::kSave, "", {width_px, kMark_mm, good, false}, gui)) wishes.px_per_mm = form.card_px_per_mm;
     ImGui::SameLine();
     if (big_button(words::kReset, "", {width_px, kMark_mm, std::isfinite(shown.notices.px_per_mm), false}, gui))
         wishes.px_per_mm = platform::kMissing;
@@ -123,8 +132,8 @@ void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wis
     paragraph(words::filled(words::kThisScreen, {shown.notices.screen_name, kept}));
     const float top_px = ImGui::GetCursorScreenPos().y;
     const PanelArea card{0.0f, top_px, screen.x, std::max(top_px + 1.0f, screen.y - 3.0f * gui.mm())};
-    drag_card(card, card_px_per_mm);
-    draw_card(card, static_cast<float>(card_px_per_mm));
+    drag_card(card, form.card_px_per_mm);
+    draw_card(card, static_cast<float>(form.card_px_per_mm));
     end_panel("scale", gui);
 }
 

@@ -115,6 +115,13 @@ struct StudyForm {
     double clock_began_s = 0.0;  // of `typed`; 0: the clock is stopped
 };
 
+// The scale of the screen, px per mm, while it is being measured.
+struct ScaleForm {
+    double card_px_per_mm = 3.78;
+    double taken_px_per_mm = 0.0;  // of the card when the field was last drawn
+    double typed_px_per_mm = 0.0;  // in the field, NaN: nothing
+};
+
 struct MapBrowser;     // map_screen.h
 struct TactileShown;   // tactile_screen.h
 struct TangibleShown;  // tangible_screen.h
@@ -127,7 +134,7 @@ struct ViewState {
     bool cost = false;  // the table of performance is open: the experimenter's view
     bool help = false;  // the list of keys is open
     MenuPage menu_page = MenuPage::trial;
-    double card_px_per_mm = 3.78;          // while the scale of the screen is being measured
+    ScaleForm scale;                       // while the scale of the screen is being measured
     std::shared_ptr<MapBrowser> maps;      // while its screen is open, else null
     std::shared_ptr<HistoryView> history;  // likewise
     StudyForm study;
@@ -199,7 +206,7 @@ void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& f
 // How many millimetres apart the numbers of a ruler stand that do not touch one another: 10, 20, 40 or 80. `number_px`: the
 // width of the widest.
 int ruler_step_mm(float px_per_mm, float number_px);
-void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes);
+void draw_scale_screen(const Shown& shown, Gui& gui, ScaleForm& form, Wishes& wishes);
 
 // True if the form holds answers that are not logged yet.
 bool answers_at_stake(const StudyForm& form);

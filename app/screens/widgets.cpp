@@ -143,8 +143,11 @@ void number_field(const char* name, double& value, const char* format) {
     if (*active)
         std::replace(ImGui::GetIO().InputQueueCharacters.begin(), ImGui::GetIO().InputQueueCharacters.end(),
                      ImWchar{','}, ImWchar{'.'});
-    ImGui::InputDouble(name, &value, 0.0, 0.0, format);
+    ImGui::InputDouble(name, &value, 0.0, 0.0, std::isfinite(value) ? format : "");
     *active = ImGui::IsItemActive();
+    const ImGuiInputTextState* typed = ImGui::GetInputTextState(ImGui::GetItemID());
+    const bool is_typed_in = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
+    if (is_typed_in && typed != nullptr && typed->CurLenW == 0) value = platform::kMissing;
 }
 
 void wrapped_text(const std::string& text) {

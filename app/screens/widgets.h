@@ -50,7 +50,7 @@ bool icon_button(Icon icon, const char* hint, const Gui& gui);
 // Explains the control drawn last, once the pointer has rested on it.
 void hint_for_last(const char* text);
 
-// Draws a field for a number, whose decimal sign may be a point or a comma. `format`: as printf's.
+// Draws a field for a number, whose decimal sign may be a point or a comma; NaN is an empty field. `format`: as printf's.
 void number_field(const char* name, double& value, const char* format);
 
 // Returns the width of one of `count` buttons that share the rest of the line.

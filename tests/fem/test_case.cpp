@@ -217,6 +217,15 @@ TEST_CASE("contact: cells that are higher than the contact's radius are warned o
     CHECK(contains(contact_warnings(*high.contact)[0], "8.281 times as high as its radius"));
 }
 
+TEST_CASE("fem case: no contact is larger than the whole section of its tool") {
+    const FemResult deep = solved(case_text(
+        R"({"box": {"size_mm": [24, 24, 12], "elements": [16, 16, 6], "grading": {"centre_mm": [12, 12], "finest_mm": 0.45}}})",
+        "hex8-bbar", kClamped,
+        R"([{"indenter": {"shape": "sphere", "radius_mm": 2, "centre_mm": [12, 12], "depth_mm": 8}}])"));
+    CHECK(deep.contact->cells_across_radius >= 4.0);
+    CHECK(deep.contact->area_m2 <= 1.000001 * std::numbers::pi * 4e-6);
+}
+
 TEST_CASE("hertz through a case: depth gives the force within 4 %, the force gives the depth back") {
     const std::string mesh =
         R"({"box": {"size_mm": [120, 120, 80], "elements": [22, 22, 12], "grading": {"centre_mm": [60, 60], "finest_mm": 0.24}}})";

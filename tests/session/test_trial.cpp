@@ -155,9 +155,25 @@ TEST_CASE("trial: a pen that lies on the screen without pressure does not press"
     const double pressed_s = person.session.trial.pressed_s;
     CHECK(pressed_s == close_to(0.2));
     for (int i = 0; i < 100; ++i) person.sample(Phase::move, 40.0, 40.0, 0.0);
-    CHECK(person.session.trial.pressed_s == pressed_s);
+    CHECK(person.session.trial.pressed_s == close_to(0.21));  // until the first sample without force
     for (int i = 0; i < 11; ++i) person.sample(Phase::move, 40.0, 40.0, 0.5);
-    CHECK(person.session.trial.pressed_s == close_to(0.3));
+    CHECK(person.session.trial.pressed_s == close_to(0.31));
+}
+
+TEST_CASE("trial: a press that is held without samples counts until it is lifted") {
+    Trainee person;
+    person.sample(Phase::down, 40.0, 40.0, 0.5);
+    const double light_N = person.session.state.touch.force_N;
+    person.t_s += 4.0;
+    person.sample(Phase::up, 40.0, 40.0, 0.0);
+    person.sample(Phase::down, 40.0, 40.0, 0.9);
+    const double hard_N = person.session.state.touch.force_N;
+    person.t_s += 1.0;
+    person.sample(Phase::up, 40.0, 40.0, 0.0);
+    const Trial& trial = person.session.trial;
+    CHECK(trial.pressed_s == close_to(5.02));
+    CHECK(trial.impulse_Ns == close_to(4.01 * light_N + 1.01 * hard_N));
+    CHECK(hard_N > 2.0 * light_N);
 }
 
 TEST_CASE("trial: a window that changes its size after a press leaves the place of the next mark on the tissue") {

@@ -81,6 +81,12 @@ TEST_CASE("calibrate fit: exact points give the paper's curve, a profile that th
     REQUIRE(compare.status == 0);
     CHECK(parse_json(compare.out, "stdout")["greatest_relative_difference"].get<double>() < 1e-9);
     CHECK(calibrate("compare " + profile + " " PALPA_SOURCE_DIR "/assets/profiles/s-pen.json").status == 0);
+    write_text_atomically(folder / "line.csv", "level,force_N\n0.2,0.2\n0.5,0.5\n0.7,0.7\n0.9,0.9\n");
+    const std::string line = (folder / "line.json").string();
+    REQUIRE(calibrate("fit " + (folder / "line.csv").string() + " --model power -o " + line).status == 0);
+    const Called none = calibrate("compare " + line + " " + line);  // 0 N at level 0, both
+    CHECK(none.status == 0);
+    CHECK_FALSE(contains(none.out, "nan"));
     const Called run = calibrate(PALPA_SOURCE_DIR "/assets/scenes/off.json --json", "explain ");
     CHECK(run.status == 0);
 }

@@ -87,6 +87,14 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 16);
     CHECK(form.guide.note == words::kNotAForce);
     CHECK(form.recording->session.points.size() == 2);
+    form.guide.note.clear();
+    form.guide.again = true;
+    frames(desk, 5);
+    tap(desk.window, SDLK_BACKSPACE);  // the field is empty now
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 16);
+    CHECK(form.guide.note == words::kNotAForce);
+    CHECK(form.recording->session.points.size() == 2);
     calibration::drop_last_point(*form.recording);
     CHECK(form.recording->session.points.size() == 1);
     hold(0.02, *form.recording);

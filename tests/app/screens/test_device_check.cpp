@@ -39,7 +39,20 @@ TEST_CASE("device check: rate, median and worst gap of a pen at 133 Hz with one 
     CHECK(median_gap_s(tool) == close_to(1.0 / 133.0).epsilon(0.03));
     CHECK(worst_gap_s(tool) == close_to(2.0 / 133.0).epsilon(1e-6));
     CHECK(of_tool(Tool::finger, *check).samples == 0);
-    CHECK(rate_Hz(of_tool(Tool::finger, *check)) == 0.0);
+    CHECK(std::isnan(rate_Hz(of_tool(Tool::finger, *check))));
+}
+
+TEST_CASE("device check: a few samples far apart tell no rate, although two of them came together") {
+    auto check = std::make_unique<DeviceCheck>();
+    observe(pen(100.0, Phase::hover, 0.0), *check);
+    for (const double t_s : {100.0, 100.3, 100.7, 101.1}) observe(pen(t_s, Phase::down, 0.5), *check);
+    const ToolCheck& tool = of_tool(Tool::pen, *check);
+    CHECK_FALSE(knows_gaps(tool));
+    CHECK(std::isnan(rate_Hz(tool)));
+    CHECK(std::isnan(worst_gap_s(tool)));
+    const files::Json json = check_json(*check);
+    CHECK(json["pen"]["rate_Hz"].is_null());
+    CHECK(json["pen"]["gap_ms"]["worst"].is_null());
 }
 
 TEST_CASE("device check: a rest is not part of the rate, and host times in a burst give way to the device's own") {
