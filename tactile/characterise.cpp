@@ -32,26 +32,32 @@ std::vector<const StrokeRow*> counting_rows(const std::vector<StrokeRow>& rows) 
     return out;
 }
 
+// k, c and h of F = k d + c + h sign(v).
+template <class Force>
+Eigen::Vector3d line_through(const std::vector<const StrokeRow*>& rows, const Force& force_N) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const StrokeRow* row : rows) {
+        const Eigen::Vector3d a(row->depth_m, 1.0, row->velocity_m_per_s > 0.0 ? 1.0 : -1.0);
+        normal += a * a.transpose();
+        right += a * force_N(*row);
+    }
+    return normal.ldlt().solve(right);
+}
+
 }  // namespace
 
-StiffnessRun stiffness_of(double wanted_N_per_m, std::vector<StrokeRow> rows) {
+StiffnessRun stiffness_of(const std::function<double(double depth_m)>& law_N, std::vector<StrokeRow> rows) {
     const std::vector<const StrokeRow*> counting = counting_rows(rows);
     constexpr std::size_t kFewest = 100;
     if (counting.size() < kFewest)
         throw std::runtime_error("characterise: found " + std::to_string(counting.size()) +
                                  " readings within the tissue, expected at least 100: did the hand press?");
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (const StrokeRow* row : counting) {
-        const Eigen::Vector3d a(row->depth_m, 1.0, row->velocity_m_per_s > 0.0 ? 1.0 : -1.0);
-        normal += a * a.transpose();
-        right += a * row->sensor_N;
-    }
-    const Eigen::Vector3d line = normal.ldlt().solve(right);
+    const Eigen::Vector3d line = line_through(counting, [](const StrokeRow& row) { return row.sensor_N; });
     StiffnessRun run;
-    run.wanted_N_per_m = wanted_N_per_m;
+    run.wanted_N_per_m = line_through(counting, [&](const StrokeRow& row) { return law_N(row.depth_m); })[0];
     run.rendered_N_per_m = line[0];
-    run.error_share = line[0] / wanted_N_per_m - 1.0;
+    run.error_share = line[0] / run.wanted_N_per_m - 1.0;
     run.hysteresis_N = std::abs(line[2]);
     run.force_at_0_N = line[1];
     run.rows = std::move(rows);

@@ -2,6 +2,7 @@
 // How stiff a force arm really feels: it renders known stiffnesses, and a force sensor between arm and hand tells what came
 // of them. The paper's measurement (its section III.A, figure 6): lines are fitted to force over depth.
 
+#include <functional>
 #include <vector>
 
 #include "tactile/arm_strokes.h"
@@ -9,7 +10,8 @@
 namespace palpa::tactile {
 
 struct StiffnessRun {
-    double wanted_N_per_m = 0.0;
+    double asked_N_per_m = 0.0;     // that the tissue was made for; the caller's
+    double wanted_N_per_m = 0.0;    // slope of the line through the law's own forces at the same depths
     double rendered_N_per_m = 0.0;  // slope of the line through all cycles
     double error_share = 0.0;       // rendered / wanted - 1
     double hysteresis_N = 0.0;      // half the distance of the lines of pressing and releasing
@@ -18,8 +20,9 @@ struct StiffnessRun {
 };
 
 // Fits F = k d + c + h sign(v) to the readings of the middle nine tenths of the depth that move about as
-// fast as most: k is the rendered stiffness, h the hysteresis. Throws std::runtime_error for fewer than 100 readings.
-StiffnessRun stiffness_of(double wanted_N_per_m, std::vector<StrokeRow> rows);
+// fast as most: k is the rendered stiffness, h the hysteresis. The wanted stiffness is the k of the law's forces at these
+// readings, so that the curve of a law is no error of the arm. Throws std::runtime_error for fewer than 100 readings.
+StiffnessRun stiffness_of(const std::function<double(double depth_m)>& law_N, std::vector<StrokeRow> rows);
 
 // Where a hand of this stiffness has to go so that it presses this deep; the simulated hand gives way.
 double hand_depth_m(double depth_m, double stiffness_N_per_m, double hand_N_per_m);

@@ -22,6 +22,8 @@
 namespace palpa::app {
 namespace {
 
+constexpr double kCurved = 0.02;  // from here on the line wanted is told from the stiffness asked for
+
 struct CharacteriseOptions {
     RigOptions rig;
     std::string scene;
@@ -150,13 +152,17 @@ void write_table(const tactile::StiffnessRun& run, const std::filesystem::path& 
         files::append_number(row.motor_N, text);
         text.push_back('\n');
     }
-    files::write_text_whole(folder / table_name(run.wanted_N_per_m), text);
+    files::write_text_whole(folder / table_name(run.asked_N_per_m), text);
 }
 
 files::Json run_json(const tactile::StiffnessRun& run, const RigResult& result) {
-    return {{"wanted_N_per_mm", 1e-3 * run.wanted_N_per_m}, {"rendered_N_per_mm", 1e-3 * run.rendered_N_per_m},
-            {"error_percent", 100.0 * run.error_share},     {"hysteresis_N", run.hysteresis_N},
-            {"loop_delay_ms", 1e3 * result.loop_delay_s},   {"link", link_json(result)}};
+    return {{"asked_N_per_mm", 1e-3 * run.asked_N_per_m},
+            {"wanted_N_per_mm", 1e-3 * run.wanted_N_per_m},
+            {"rendered_N_per_mm", 1e-3 * run.rendered_N_per_m},
+            {"error_percent", 100.0 * run.error_share},
+            {"hysteresis_N", run.hysteresis_N},
+            {"loop_delay_ms", 1e3 * result.loop_delay_s},
+            {"link", link_json(result)}};
 }
 
 void write_results(const std::vector<tactile::StiffnessRun>& runs, const CharacteriseOptions& options,
@@ -166,7 +172,7 @@ void write_results(const std::vector<tactile::StiffnessRun>& runs, const Charact
     for (const tactile::StiffnessRun& run : runs) {
         write_table(run, folder);
         panels.push_back({1e-3 * run.wanted_N_per_m, 1e-3 * run.rendered_N_per_m, run.hysteresis_N, run.force_at_0_N,
-                          table_name(run.wanted_N_per_m)});
+                          table_name(run.asked_N_per_m)});
     }
     files::write_text_atomically(folder / "characterise.json", files::json_text(json));
     const std::string warning = figures::draw_stiffness(panels, options.rig.simulate, folder);
@@ -179,6 +185,10 @@ void print_runs(const std::vector<tactile::StiffnessRun>& runs, const files::Jso
         std::printf("%.3g N/mm  %.4f N/mm  %+5.1f %%  +-%.3f N\n", 1e-3 * run.wanted_N_per_m,
                     1e-3 * run.rendered_N_per_m, 100.0 * run.error_share, run.hysteresis_N);
     }
+    const bool curved = std::any_of(runs.begin(), runs.end(), [](const tactile::StiffnessRun& run) {
+        return std::abs(run.wanted_N_per_m / run.asked_N_per_m - 1.0) > kCurved;
+    });
+    if (curved) std::printf("wanted: the same line through the tissue's own force, which is not straight\n");
     std::printf("mean error %.2f %%, worst hysteresis +-%.3f N%s\n", json["mean_error_percent"].get<double>(),
                 json["worst_hysteresis_N"].get<double>(),
                 json["simulated"].get<bool>() ? " (SIMULATED arm and hand)" : "");
@@ -201,20 +211,21 @@ void check_characterise(const CharacteriseOptions& options) {
 }
 
 // One stiffness: strokes, line, and its entry in the report.
-tactile::StiffnessRun characterise_one(double wanted_N_per_m, const CharacteriseOptions& options,
+tactile::StiffnessRun characterise_one(double asked_N_per_m, const CharacteriseOptions& options,
                                        const CharacterisedTissue& tissue, const devices::ArmDevice& device,
                                        const std::optional<tactile::ArmCompensation>& compensation, files::Json& json) {
     tactile::StrokeOptions stroke;
-    stroke.law = law_of(wanted_N_per_m, tissue);
+    stroke.law = law_of(asked_N_per_m, tissue);
     stroke.compensation = compensation;
     stroke.limits = devices::limits_of(&device, nullptr, options.force_limit_N);
-    RigResult result = stroke_along(options.rig, device, path_of(options, wanted_N_per_m), stroke,
-                                    files::short_number(1e-3 * wanted_N_per_m) + " N/mm");
-    if (const std::string warning = devices::delay_warning(wanted_N_per_m, result.loop_delay_s); !warning.empty()) {
+    RigResult result = stroke_along(options.rig, device, path_of(options, asked_N_per_m), stroke,
+                                    files::short_number(1e-3 * asked_N_per_m) + " N/mm");
+    if (const std::string warning = devices::delay_warning(asked_N_per_m, result.loop_delay_s); !warning.empty()) {
         json["warnings"].push_back(warning);
         std::fprintf(stderr, "palpa: warning: %s\n", warning.c_str());
     }
-    tactile::StiffnessRun run = tactile::stiffness_of(wanted_N_per_m, std::move(result.strokes.rows));
+    tactile::StiffnessRun run = tactile::stiffness_of(stroke.law, std::move(result.strokes.rows));
+    run.asked_N_per_m = asked_N_per_m;
     json["runs"].push_back(run_json(run, result));
     return run;
 }

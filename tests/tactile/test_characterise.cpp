@@ -62,11 +62,12 @@ TEST_CASE("characterise: arms of seeds 1 to 10, compensated: mean error 5 %, non
         double sum = 0.0;
         for (const double wanted : {250.0, 330.0, 500.0, 1000.0}) {
             CAPTURE(wanted);
-            const StiffnessRun run = stiffness_of(wanted, cycles_at(wanted, arm, found, seed).rows);
+            const auto law_N = [&](double depth_m) { return wanted * depth_m; };
+            const StiffnessRun run = stiffness_of(law_N, cycles_at(wanted, arm, found, seed).rows);
             CHECK(std::abs(run.error_share) < 0.15);
             CHECK(run.hysteresis_N < 0.2);
             sum += std::abs(run.error_share) / 4.0;
-            const StiffnessRun bare = stiffness_of(wanted, cycles_at(wanted, arm, std::nullopt, seed).rows);
+            const StiffnessRun bare = stiffness_of(law_N, cycles_at(wanted, arm, std::nullopt, seed).rows);
             uncompensated_sum += std::abs(bare.error_share) / 40.0;
             uncompensated_hysteresis_N = std::max(uncompensated_hysteresis_N, bare.hysteresis_N);
         }
@@ -86,12 +87,26 @@ TEST_CASE("characterise: line, offset and hysteresis of readings that are known"
         const double v = down ? 5e-3 : -5e-3;
         rows.push_back({1e-3 * i, depth_m, v, 400.0 * depth_m + 0.3 + (down ? 0.25 : -0.25), 0.0});
     }
-    const StiffnessRun run = stiffness_of(500.0, rows);
+    const StiffnessRun run = stiffness_of([](double depth_m) { return 500.0 * depth_m; }, rows);
+    CHECK(run.wanted_N_per_m == close_to(500.0));
     CHECK(run.rendered_N_per_m == close_to(400.0));
     CHECK(run.error_share == close_to(-0.2));
     CHECK(run.hysteresis_N == close_to(0.25));
     CHECK(run.force_at_0_N == close_to(0.3));
-    CHECK_THROWS_WITH_AS(stiffness_of(500.0, {}), doctest::Contains("did the hand press"), std::runtime_error);
+    CHECK_THROWS_WITH_AS(stiffness_of([](double) { return 0.0; }, {}), doctest::Contains("did the hand press"),
+                         std::runtime_error);
+}
+
+TEST_CASE("characterise: the curve of a law that is rendered exactly is no error of the arm") {
+    const auto law_N = [](double depth_m) { return 2e4 * depth_m * depth_m; };
+    std::vector<StrokeRow> rows;
+    for (int i = 0; i < 4000; ++i) {
+        const double depth_m = i < 2000 ? 5e-6 * i : 5e-6 * (4000 - i);
+        rows.push_back({1e-3 * i, depth_m, i < 2000 ? 5e-3 : -5e-3, law_N(depth_m), 0.0});
+    }
+    const StiffnessRun run = stiffness_of(law_N, rows);
+    CHECK(run.wanted_N_per_m == close_to(200.0).epsilon(0.01));  // the slope in the middle of 0.5 to 9.5 mm
+    CHECK(run.error_share == close_to(0.0));
 }
 
 TEST_CASE("strokes: an arm that is compensated and held still stays quiet, with soft and stiff hands") {
