@@ -48,6 +48,7 @@ struct TactileMoment {
 
     double round_trip_p50_s = kNone;  // of the link
     double round_trip_p99_s = kNone;
+    double silent_s = kNone;    // since the arm's last answer; NaN while it answers
     std::int64_t lost = 0;      // packets
     double step_p50_s = kNone;  // of the loop
     double step_p99_s = kNone;

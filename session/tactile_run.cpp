@@ -36,6 +36,13 @@ void choose_input(std::span<const devices::PressRow> press, tactile::TactilePlan
     plan.input = std::isfinite(press.front().force_N) ? tactile::InputKind::force : tactile::InputKind::depth;
 }
 
+const char* fault_words(devices::Fault fault, bool arm_silent, bool pins_silent) {
+    if (fault == devices::Fault::none) return "";
+    if (fault != devices::Fault::silence || (!arm_silent && !pins_silent)) return devices::text(fault).data();
+    if (!pins_silent) return "nothing comes from the arm";
+    return arm_silent ? "nothing comes from the arm, nor from the pins" : "nothing comes from the pins";
+}
+
 std::int64_t steps_of(std::span<const devices::PressRow> press) {
     if (press.empty()) return 0;
     return 1 + static_cast<std::int64_t>(std::floor((press.back().t_s - press.front().t_s) / tactile::kStep_s + 1e-9));

@@ -93,6 +93,8 @@ class TactileThread {
         record_.sensor_N = arm.sensor_N;
         record_.has_sensor = arm.has_sensor;
         record_.round_trip_s = arm.round_trip_s;
+        record_.arm_age_s = arm.age_s;
+        record_.pins_silent = devices::fault_of(port_.pins().state) == devices::Fault::silence;
         record_.lost = port_.link() != nullptr ? port_.link()->feedback.lost : 0;
         record_.fault = port_.fault();
         record_.step_ns = static_cast<double>(files::steady_ns() - before_ns);
@@ -219,11 +221,14 @@ void fill_moment(const tactile::TactilePlan& plan, const StepRecord& record, Tac
     out.linearity = step.linearity;
     out.over_edge = step.over_edge;
     out.held = step.held;
-    out.fault = rendered ? "" : devices::text(record.fault).data();
+    const bool arm_silent = plan.arm && record.arm_age_s > plan.arm->silence_s;
+    out.fault = fault_words(record.fault, arm_silent, record.pins_silent);
+    out.silent_s = arm_silent ? record.arm_age_s : TactileMoment::kNone;
     out.stopped = devices::latches(record.fault);
     out.lost = record.lost;
     const double delay_s = tactile::kStep_s + record.round_trip_s;
     out.stiffness_delay_N_s_per_m = plan.arm ? plan.stiffness_N_per_m * delay_s : 0.0;
+    if (arm_silent) out.stiffness_delay_N_s_per_m = TactileMoment::kNone;  // that of an answer that is over
     double sum_m2 = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(step.pins); ++i) {
         const double off_m = out.reached_m[i] - step.wanted_m[i];

@@ -66,11 +66,7 @@ void draw_loop_lines(const TactileShown& tactile, float column_px) {
     const TactileMoment& moment = tactile.moment;
     if (!tactile.runs) return;
     if (moment.arm) {
-        value_line(
-            words::kLink,
-            words::filled(words::kLinkTimes, {fixed(1e3 * moment.round_trip_p50_s, 2),
-                                              fixed(1e3 * moment.round_trip_p99_s, 2), std::to_string(moment.lost)}),
-            column_px);
+        value_line(words::kLink, link_text(moment), column_px);
         value_line(words::kSwing, in_unit(moment.stiffness_delay_N_s_per_m, 1.0, 1, "N s/m"), column_px);
     }
     value_line(words::kLoopSteps,
@@ -133,6 +129,13 @@ void draw_fields(const PanelArea& area, const TactileMoment& moment, float mm) {
 }
 
 }  // namespace
+
+std::string link_text(const TactileMoment& moment) {
+    if (std::isfinite(moment.silent_s))
+        return words::filled(words::kLinkSilent, {in_unit(moment.silent_s, 1.0, 1, "s")});
+    return words::filled(words::kLinkTimes, {fixed(1e3 * moment.round_trip_p50_s, 2),
+                                             fixed(1e3 * moment.round_trip_p99_s, 2), std::to_string(moment.lost)});
+}
 
 void draw_tactile_screen(const Shown& shown, Gui& gui, Wishes& wishes) {
     const HalfScreen halves = halves_of(gui);

@@ -338,6 +338,7 @@ inline constexpr const char* kClippedPins = "Pins clipped";
 inline constexpr const char* kShapeScale = "Shape scaled";
 inline constexpr const char* kLink = "Link";
 inline constexpr const char* kLinkTimes = "{} ms (p99 {}), {} lost";
+inline constexpr const char* kLinkSilent = "no answer for {}";
 inline constexpr const char* kSwing = "Stiffness x delay";
 inline constexpr const char* kMaySwing = "Above 8 N s/m the arm may begin to swing in a soft hand.";
 inline constexpr const char* kLoopSteps = "Loop";

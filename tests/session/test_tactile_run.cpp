@@ -325,6 +325,15 @@ TEST_CASE("tactile run: a table that becomes ready during a run is a row of the 
     CHECK(force_N.size() == 1000);
 }
 
+TEST_CASE("tactile live: a silence names the device that does not answer") {
+    using devices::Fault;
+    CHECK(fault_words(Fault::none, true, true) == std::string());
+    CHECK(fault_words(Fault::silence, true, false) == std::string("nothing comes from the arm"));
+    CHECK(fault_words(Fault::silence, false, true) == std::string("nothing comes from the pins"));
+    CHECK(fault_words(Fault::silence, true, true) == std::string("nothing comes from the arm, nor from the pins"));
+    CHECK(fault_words(Fault::stopped, true, false) == std::string("stopped"));
+}
+
 TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes on; rows are recorded") {
     const TactileScene slab(R"({"display": {}})");  // pins that are only drawn: nothing to open
     const TemporaryFolder folder;

@@ -70,6 +70,10 @@ TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running,
     TactileShown stopped = running;
     stopped.moment.stopped = true;
     stopped.moment.fault = "F12";
+    TactileShown silent = running;
+    silent.moment.fault = "nothing comes from the arm, nor from the pins";
+    silent.moment.silent_s = 1234.5;
+    silent.moment.stiffness_delay_N_s_per_m = kMissing;
     TactileShown failed;
     failed.problem =
         "assets/devices/pins-6x6.json: boards[0].port: found nothing at /dev/ttyACM0, expected the serial port of a "
@@ -95,12 +99,20 @@ TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running,
         };
         draw_it(screen, running, "tactile");
         draw_it(screen, stopped, "tactile-stopped");
+        draw_it(screen, silent, "tactile-silent");
         draw_it(screen, failed, "tactile-failed");
         draw_it(screen, drawn, "tactile-drawn");
         draw_it(screen, many, "tactile-many");
         draw_it(trial, running, "trial-pins");
         draw_it(trial, stopped, "trial-pins-stopped");
     }
+}
+
+TEST_CASE("arm and pins: the link of an arm that is silent has the time since its last answer, and no round trips") {
+    TactileMoment moment = pressed_tactile().moment;
+    CHECK(link_text(moment) == "0.21 ms (p99 0.48), 3 lost");
+    moment.silent_s = 25.04;
+    CHECK(link_text(moment) == "no answer for 25.0 s");
 }
 
 namespace {
