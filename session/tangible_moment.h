@@ -65,8 +65,8 @@ struct TangibleMoment {
 
     // The inverse problem of this tick, term by term, along the direction of the finger (m):
     // residual_m = gap_m + by_actuators_m.
-    double gap_m = 0.0;           // of the effector, with the finger's new depth and force and the last actuation
-    double by_actuators_m = 0.0;  // W times the change of actuation
+    double gap_m = 0.0;  // of the effector at the finger's new depth and force, linearised, with the actuators at zero
+    double by_actuators_m = 0.0;  // W times the whole actuation
     Actuators compliance{};       // row of W: m/N, or m/Pa
     double residual_m = 0.0;      // what the actuators cannot close
     std::int32_t rank = 0;

@@ -3,7 +3,7 @@
 // presses with the wanted force?
 //
 // With W = J K^-1 H^T (J: gradient of what is observed, K: tangent stiffness, H: gradients of lengths and volumes) and d
-// the gap without a change of actuation, both from one factorisation,
+// the gap that the linear model has with all actuators at zero, both from one factorisation,
 //
 //   minimise |W a + d|^2 + t sum_j |w_j|^2 a_j^2 + sum_j (r / range_j)^2 (a_j - a_before)^2,   lower <= a <= upper
 //
@@ -50,7 +50,7 @@ struct InverseAnswer {
     int factorisations = 0;
     // the terms of the problem, for screens: rows depth, tilt, tilt; columns actuators
     Eigen::Matrix<double, 3, kMostActuators> W = Eigen::Matrix<double, 3, kMostActuators>::Zero();
-    Eigen::Vector3d gap = Eigen::Vector3d::Zero();  // d, with a change from the last actuation: m, 1, 1
+    Eigen::Vector3d gap = Eigen::Vector3d::Zero();  // d, with the actuators at zero: m, 1, 1
 };
 
 // One tick. Nothing throws or allocates; where nothing can be found, the answer repeats the last actuation and says so.

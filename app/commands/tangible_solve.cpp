@@ -116,7 +116,7 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
     std::printf("%s, finger %s mm deep with %s N: find the a that minimise |W a + d|\n",
                 files::printable(model.device.name).c_str(), files::short_number(options.depth_mm).c_str(),
                 files::short_number(options.force_N).c_str());
-    std::printf("d, the gap of the depth without the actuators' change: %s mm\n",
+    std::printf("d, the linearised gap of the depth with the actuators at zero: %s mm\n",
                 files::short_number(1e3 * answer.gap(0)).c_str());
     for (std::size_t j = 0; j < model.actuators.size(); ++j) {
         const tangible::SoftActuator& actuator = model.actuators[j];

@@ -81,6 +81,14 @@ TEST_CASE("tangible solve: every term of a press that can be rendered, and what 
     CHECK(hard["limited_by"].is_string());
 }
 
+TEST_CASE("tangible solve: d is called the gap with the actuators at zero, and W a + d is what is left") {
+    const StripFolder strip;
+    const std::string solve = "tangible solve " + strip.path("strip.json") + " --depth-mm 3 --force-N 0.3";
+    const std::string text = palpa_with(solve).out;
+    CHECK(contains(text, "d, the linearised gap of the depth with the actuators at zero: "));
+    CHECK(contains(text, "what is left, W a + d: "));
+}
+
 TEST_CASE("tangible run: on a plant in virtual time the log repeats byte for byte, and none is overwritten") {
     const StripFolder strip;
     const std::string run = "tangible run " + strip.path("scene.json") + " --headless --seconds 1 --json --log ";
