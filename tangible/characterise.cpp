@@ -86,6 +86,7 @@ PressFigures figures_of(std::vector<PressTick> ticks) {
     if (out.ticks.empty()) return out;
     const auto n = static_cast<double>(out.ticks.size());
     out.saturated_share /= n;
+    out.failed_share = out.failed_ticks / n;
     if (depth2 > 0.0) {
         out.wanted_N_per_m = wanted / depth2;
         out.rendered_N_per_m = rendered / depth2;

@@ -121,7 +121,8 @@ files::Json press_json(const PressedTissue& tissue, const PressFigures& figures)
             {"force_worst_percent", figures.force_worst_percent},
             {"hysteresis_N", figures.hysteresis_N},
             {"saturated_share", figures.saturated_share},
-            {"failed_ticks", figures.failed_ticks}};
+            {"failed_ticks", figures.failed_ticks},
+            {"failed_share", figures.failed_share}};
 }
 
 // What each difference of the plant costs alone: the rms error of the middle press with it and nothing else; 0 for a
@@ -189,20 +190,30 @@ void write_press_table(const TangiblePlan& plan, const PressFigures& figures, co
     files::write_text_atomically(file, text);
 }
 
+void print_press(const files::Json& press) {
+    constexpr double kMostly = 0.5;
+    const double failed_share = press["failed_share"].get<double>();
+    // what is felt of a device that rests is no stiffness that it renders
+    const char* found =
+        failed_share > kMostly ? "NOT RENDERED, the figures are of a device that mostly rested: " : "rendered ";
+    std::printf(
+        "  %s: %s%.4g N/mm of %.4g, force off by %.3g %% rms (%.3g %% at worst), hysteresis %.3g N, "
+        "saturated in %.3g %% of the ticks, relaxed, held or without equilibrium in %.3g %%\n",
+        press["tissue"].get<std::string>().c_str(), found, press["rendered_N_per_mm"].get<double>(),
+        press["wanted_N_per_mm"].get<double>(), press["force_rms_percent"].get<double>(),
+        press["force_worst_percent"].get<double>(), press["hysteresis_N"].get<double>(),
+        100.0 * press["saturated_share"].get<double>(), 100.0 * failed_share);
+}
+
 void print_characterised(const files::Json& json) {
     std::printf("%s, plant %s\n", json["device"].get<std::string>().c_str(), json["plant"].get<std::string>().c_str());
-    for (const auto& press : json["presses"])
-        std::printf(
-            "  %s: rendered %.4g N/mm of %.4g, force off by %.3g %% rms (%.3g %% at worst), hysteresis %.3g N, "
-            "saturated in %.3g %% of the ticks\n",
-            press["tissue"].get<std::string>().c_str(), press["rendered_N_per_mm"].get<double>(),
-            press["wanted_N_per_mm"].get<double>(), press["force_rms_percent"].get<double>(),
-            press["force_worst_percent"].get<double>(), press["hysteresis_N"].get<double>(),
-            100.0 * press["saturated_share"].get<double>());
+    for (const auto& press : json["presses"]) print_press(press);
     const auto& range = json["reach"]["stiffness_N_per_mm"];
     std::printf(
-        "  at %.3g mm the device, at the pretension for these tissues, can be made between %.3g and %.3g N/mm stiff\n",
-        json["reach"]["depth_mm"].get<double>(), range[0].get<double>(), range[1].get<double>());
+        "  at %.3g mm the device, at the pretension for these tissues, can be made between %.3g and %.3g N/mm "
+        "stiff%s\n",
+        json["reach"]["depth_mm"].get<double>(), range[0].get<double>(), range[1].get<double>(),
+        json["reach"]["reachable"].get<bool>() ? "" : ": NOT all that was wanted is reachable");
     for (const auto& [name, percent] : json["contributions_percent"].items()) {
         if (percent.get<double>() > 0.0) std::printf("  %s alone: %.3g %% rms\n", name.c_str(), percent.get<double>());
     }

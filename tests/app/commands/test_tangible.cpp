@@ -166,6 +166,20 @@ TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is fou
     CHECK(contains(metres.err, "the device's size"));
 }
 
+TEST_CASE("tangible characterise: a press in which the device was mostly relaxed renders no stiffness") {
+    const StripFolder strip;
+    const std::string press =
+        "tangible characterise " + strip.path("strip.json") + " --depth-mm 3 --speed-mm-per-s 20 --stiffness-N-per-mm ";
+    const std::string text = palpa_with(press + "1000").out;
+    CHECK(contains(text, "NOT RENDERED, the figures are of a device that mostly rested: "));
+    CHECK(contains(text, "NOT all that was wanted is reachable"));
+    const files::Json hard = result_of(palpa_with(press + "1000 --json"))["presses"][0];
+    CHECK(hard["failed_share"].get<double>() > 0.5);
+    const std::string soft = palpa_with(press + "0.1").out;
+    CHECK(contains(soft, "relaxed, held or without equilibrium in 0 %"));
+    CHECK_FALSE(contains(soft, "NOT"));
+}
+
 TEST_CASE("tangible: explain names the stages of a scene's soft device, and what a tick of it costs here") {
     const StripFolder folder;
     const files::Json json = result_of(palpa_with("explain " + folder.path("scene.json") + " --json"));
