@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "tangible/plant_model.h"
@@ -29,9 +30,9 @@ struct FitResult {
     DeviceFit fit;
     double rms_before_N = 0.0;  // recorded minus modelled force
     double rms_after_N = 0.0;
-    double lag_error_s = 0.0;  // standard error of the lag, if it was fitted
-    int ticks = 0;             // that were used
-    int rounds = 0;            // of the Gauss-Newton method
+    std::optional<double> lag_error_s;  // standard error of a lag that was seen; a lag at its bound 0 has none
+    int ticks = 0;                      // that were used
+    int rounds = 0;                     // of the Gauss-Newton method
     bool settled = false;
 };
 

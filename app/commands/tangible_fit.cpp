@@ -62,7 +62,7 @@ void fit_tangible(const TangibleFitArguments& arguments) {
     }
     files::write_text_atomically(arguments.output, files::json_text(fitted_device(arguments, result.fit)));
     files::Json json = fit_json(result.fit);
-    json["lag_error_ms"] = 1e3 * result.lag_error_s;
+    json["lag_error_ms"] = result.lag_error_s ? files::Json(1e3 * *result.lag_error_s) : files::Json(nullptr);
     json.update({{"rms_before_N", result.rms_before_N},
                  {"rms_after_N", result.rms_after_N},
                  {"ticks", result.ticks},
@@ -75,9 +75,11 @@ void fit_tangible(const TangibleFitArguments& arguments) {
     std::printf("%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm\n",
                 arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share,
                 1e3 * result.fit.zero_m);
-    if (arguments.lag)
+    if (arguments.lag && result.lag_error_s)
         std::printf("  drives lag by %.3g ms (standard error %.2g)\n", 1e3 * result.fit.lag_s,
-                    1e3 * result.lag_error_s);
+                    1e3 * *result.lag_error_s);
+    if (arguments.lag && !result.lag_error_s)
+        std::printf("  no lag of the drives is seen in this press, which does not say that there is none\n");
     std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)\n", result.rms_before_N,
                 result.rms_after_N, result.ticks);
 }

@@ -61,6 +61,7 @@ TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     const FitResult result = fit_presses(small_strip()->device, ticks, {true, 24, {}});
     CHECK(result.settled);
     CHECK(result.fit.lag_s == close_to(0.05).epsilon(0.1));
+    CHECK(result.lag_error_s.has_value());
     CHECK(result.fit.modulus_factor == close_to(1.1).epsilon(0.02));
     CHECK(result.fit.friction_share < 0.02);
     SoftDevice known = small_strip()->device;  // the same presses, and a lag that the device's file holds
@@ -68,6 +69,12 @@ TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     const FitResult kept = fit_presses(known, ticks, {false, 24, {}});
     CHECK(kept.fit.lag_s == 0.05);
     CHECK(kept.fit.modulus_factor == close_to(1.1).epsilon(0.005));
+}
+
+TEST_CASE("fit: a lag that is not seen has no standard error") {
+    const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.1), 2), {true, 24, {}});
+    CHECK(result.fit.lag_s == 0.0);
+    CHECK_FALSE(result.lag_error_s.has_value());
 }
 
 TEST_CASE("fit: bad tables and presses that tell nothing") {

@@ -157,6 +157,9 @@ TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is fou
     CHECK(result_of(palpa_with(fit + strip.path("new.json")))["modulus_factor"].get<double>() ==
           close_to(1.1).epsilon(0.02));
     CHECK(files::read_json(strip.folder / "new.json")["fit"].contains("friction_share"));
+    const files::Json lag = result_of(palpa_with(fit + strip.path("lag.json") + " --lag"));
+    CHECK(lag["lag_ms"] == 0.0);
+    CHECK(lag["lag_error_ms"].is_null());
     files::write_text_atomically(strip.folder / "m.tsv",
                                  "time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n0\t4000\t0.1\t1\t1\n");
     const Called metres = palpa_with("tangible fit " + strip.path("strip.json") + " " + strip.path("m.tsv") + " -o " +
