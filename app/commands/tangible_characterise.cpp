@@ -240,10 +240,11 @@ void characterise(const TangibleCharacteriseArguments& arguments) {
         files::check_output_folder(arguments.folder);
         files::check_new(fs::path(arguments.folder) /
                          "characterise.json");  // tables of two runs would stand side by side
-        fs::create_directories(arguments.folder);
     }
     const auto model = std::make_shared<const tangible::DeviceModel>(
         make_device_model(tangible::read_soft_device(device_file(arguments.device))));
+    check_depth("--depth-mm", "", 1e-3 * arguments.depth_mm, *model);
+    if (!arguments.folder.empty()) fs::create_directories(arguments.folder);
     const PlantOptions plant = plant_of(arguments);
     const PressedTissues tissues = tissues_of(arguments);
     files::Json json{{"device", model->device.name},
@@ -288,7 +289,8 @@ void add_tangible_characterise(CLI::App& tangible) {
         ->delimiter(',')
         ->check(CLI::Range(1e-4, 1e3));
     command->add_option("--scene", arguments->scene, "a scene whose tissue is wanted");
-    command->add_option("--depth-mm", arguments->depth_mm, "of the presses (default 6)")->check(CLI::Range(0.1, 100.0));
+    command->add_option("--depth-mm", arguments->depth_mm, "of the presses (default 6), at most the device's size")
+        ->check(CLI::Range(0.1, 100.0));
     command->add_option("--speed-mm-per-s", arguments->speed_mm_per_s, "mean speed there and back (default 5)")
         ->check(CLI::Range(0.1, 1000.0));
     command->add_option("--plant", arguments->plant, "exact (default), or a plant file");

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "files/json.h"
-#include "tangible/device_file.h"
+#include "tangible/device_model.h"
 
 namespace CLI {
 class App;
@@ -15,6 +15,10 @@ namespace palpa::app {
 
 // The device file that a person names: a path, or the name of one among the assets.
 std::filesystem::path device_file(const std::string& name);
+
+// Refuses a depth that the device cannot have; an equilibrium there is looked for without end. where, key: as in
+// files::bad_input().
+void check_depth(const std::string& where, const std::string& key, double depth_m, const tangible::DeviceModel& model);
 
 // The key `fit` of a device file.
 files::Json fit_json(const tangible::DeviceFit& fit);

@@ -213,6 +213,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = std::make_shared<const tangible::TangiblePlan>(
         tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments, *scene.tangible)));
+    for (const devices::PressRow& row : press) check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
     const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
@@ -247,6 +248,12 @@ fs::path device_file(const std::string& name) {
                             assets_folder() / "devices");
 }
 
+void check_depth(const std::string& where, const std::string& key, double depth_m, const tangible::DeviceModel& model) {
+    if (depth_m > model.size_m)
+        throw files::bad_input(where, key, files::short_number(1e3 * depth_m),
+                               "at most the device's size, " + files::short_number(1e3 * model.size_m));
+}
+
 void add_loop_options(CLI::App& command, bool of_scene, std::string& fidelity, std::string& kind, double& rate_Hz) {
     const std::string scenes = of_scene ? "default: the scene's, or " : "default: ";
     command.add_option("--fidelity", fidelity, "of the inverse problem (" + scenes + "step, one Newton step per tick)")
@@ -266,8 +273,9 @@ void add_tangible_run(CLI::App& tangible) {
                         "a model in the place of the device: exact, or a plant file (default: the scene's)");
     command->add_option("--port", arguments->ports, "NAME=PATH of a port, instead of the device file's");
     command->add_option("--press", arguments->press,
-                        "PRESS.tsv (t_s, x_mm, y_mm, depth_mm or force_N) of the finger on a plant (default: there and "
-                        "back, 6 mm at 5 mm/s, or 3/4 of the depth that the tissue is known for where that is less)");
+                        "PRESS.tsv (t_s, x_mm, y_mm, depth_mm, at most the device's size, or force_N) of the finger on "
+                        "a plant (default: there and back, 6 mm at 5 mm/s, or 3/4 of the depth that the tissue is "
+                        "known for where that is less)");
     command->add_option("--replay", arguments->replay,
                         "PRESS.tangible.tsv of an earlier --log: what the loop took in then, run again without a "
                         "device; the same commands");

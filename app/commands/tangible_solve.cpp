@@ -143,9 +143,7 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
 void run_solve(const TangibleSolveOptions& options) {
     const tangible::DeviceModel model =
         tangible::make_device_model(tangible::read_soft_device(device_file(options.device)));
-    if (const double most_mm = 1e3 * model.size_m; options.depth_mm > most_mm)
-        throw files::bad_input("--depth-mm", "", files::short_number(options.depth_mm),
-                               "at most the device's size, " + files::short_number(most_mm));
+    check_depth("--depth-mm", "", 1e-3 * options.depth_mm, model);
     const SolvedPress solved = solve_press(model, options);
     const files::Json json = solve_json(model, solved);
     if (options.json)

@@ -104,6 +104,24 @@ TEST_CASE("tangible run: on a plant in virtual time the log repeats byte for byt
     CHECK(contains(again.err, "a/ticks.tsv: found something of that name, expected a new name"));
 }
 
+TEST_CASE("tangible run and characterise: a depth that the device cannot have is refused before anything runs") {
+    const StripFolder strip;
+    files::write_text_atomically(strip.folder / "press.tsv", "t_s\tx_mm\ty_mm\tdepth_mm\n0\t0\t0\t0\n1\t0\t0\t1e6\n");
+    const Called run = palpa_with("tangible run " + strip.path("scene.json") + " --headless --press " +
+                                  strip.path("press.tsv") + " --log " + strip.path("log"));
+    CHECK(run.status == 2);
+    CHECK(contains(run.err, "press.tsv: depth_mm: found 1e+06, expected at most the device's size, "));
+    CHECK_FALSE(std::filesystem::exists(strip.folder / "log"));
+    files::Json small = files::read_json(strip.folder / "strip.json");
+    small["mesh"]["box"]["size_mm"] = {60, 20, 4};
+    files::write_text_atomically(strip.folder / "small.json", small.dump());
+    const Called press = palpa_with("tangible characterise " + strip.path("small.json") +
+                                    " --stiffness-N-per-mm 0.1 --depth-mm 90 -o " + strip.path("out"));
+    CHECK(press.status == 2);
+    CHECK(contains(press.err, "--depth-mm: found 90, expected at most the device's size, "));
+    CHECK_FALSE(std::filesystem::exists(strip.folder / "out"));
+}
+
 TEST_CASE("tangible run: the recorded rows of a run give its commands again, without a plant") {
     const StripFolder strip;
     const std::string run = "tangible run " + strip.path("scene.json") + " --json --log ";
