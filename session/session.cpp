@@ -287,9 +287,13 @@ bool files_good(const Session& session) {
            !(session.trial_log && session.trial_log->failed()) && !session.failed;
 }
 
+void note_time(double now_s, Session& session) {
+    if (session.trial.began) session.trial.now_s = std::max(session.trial.now_s, now_s);
+}
+
 void note_event(std::string_view trial_type, double now_s, Session& session) {
     if (!session.trial_log) return;
-    if (session.trial.began) session.trial.now_s = std::max(session.trial.now_s, now_s);  // what follows is not before
+    note_time(now_s, session);
     study::EventRow row = event_row(session, platform::Action::none);
     row.trial_type = trial_type;
     session.trial_log->write(row);

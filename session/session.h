@@ -84,6 +84,9 @@ bool files_good(const Session& session);
 // Logs an event that no sample brings, such as the loss of a device. now_s: host time, as Sample::t_host_s.
 void note_event(std::string_view trial_type, double now_s, Session& session);
 
+// Moves the trial's time on where no sample does; rows that follow are not before it.
+void note_time(double now_s, Session& session);
+
 // Puts everything on the disk, with `performance` as the file of that name, and closes the files. A trial that is not
 // finished is logged as interrupted, with its marks so far. Returns false if anything could not be written.
 bool close_files(const files::Json& performance, Session& session);

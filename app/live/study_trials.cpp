@@ -67,6 +67,7 @@ bool may_begin(const App& app) {
 // repeated.
 void interrupt_study_trial(bool device_gone, platform::Window& window, App& app) {
     if (device_gone) session::note_event("device_gone", now_of(app, window), app.session);
+    session::note_time(now_of(app, window), app.session);  // without touches no sample has told the time
     app.asked.reset();
     StudyRun& run = *study_of(app.doing);
     const std::string why = close_trial(app);

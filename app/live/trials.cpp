@@ -262,8 +262,9 @@ void act(platform::Action action, platform::Window& window, App& app) {
     const StudyRun* study = study_of(app.doing);
     const bool pair = study != nullptr && due_compares(*study);
     if (pair && action != platform::Action::finish) return;  // in a comparison there is nothing to mark
-    if (pair && not_touched(app) && now_of(app, window) < trial_ends_s(app)) {
-        app.notices.note = words::kTouchFirst;
+    const bool finish = study != nullptr && action == platform::Action::finish;
+    if (finish && not_touched(app) && now_of(app, window) < trial_ends_s(app)) {
+        app.notices.note = words::kTouchFirst;  // nothing that was not felt counts as missed
         return;
     }
     const bool clock = action == platform::Action::pause || action == platform::Action::resume;

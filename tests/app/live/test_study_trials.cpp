@@ -123,7 +123,28 @@ TEST_CASE("live: a surface or a trial that nobody touches in its time is repeate
         const auto first = read_text(
             log / "log/sub-01/beh" /
             ("sub-01_task-" + std::string(desk.run().interval > 0 ? "interval" : "palpation") + "_run-01_events.tsv"));
-        CHECK(contains(first, "\tinterrupted\t"));
+        const std::size_t at = first.find("\tinterrupted\t");
+        REQUIRE(at != std::string::npos);
+        const std::size_t line = first.rfind('\n', at) + 1;
+        CHECK(std::stod(first.substr(line)) >= 0.3);  // its onset: when the time was over, not when it began
+    }
+}
+
+TEST_CASE("live: finishing a study's trial that nobody has touched asks to press first, also in practice") {
+    for (const char* task : {R"("repeats": 2)", R"("repeats": 2, "practice": {"trials": 1})"}) {
+        CAPTURE(task);
+        const TemporaryFolder folder;
+        StudyDesk desk(folder, task);
+        REQUIRE(trial_goes_on(desk.run()));
+        desk.finish();
+        CHECK(trial_goes_on(desk.run()));
+        CHECK(desk.app.notices.note == words::kTouchFirst);
+        CHECK(desk.run().progress.finished.empty());
+        desk.press();
+        desk.step();
+        CHECK(desk.app.notices.note.empty());
+        desk.finish();
+        CHECK_FALSE(trial_goes_on(desk.run()));
     }
 }
 
