@@ -21,7 +21,7 @@ struct Replication {
     bool significant = false;  // delta > combined_interval, uncorrected
     Interval newcombe;         // of p_a - p_b
     double p = 1.0;
-    double p_holm = 1.0;  // corrected for all pairs of the table
+    double p_holm = 1.0;  // corrected for all pairs of conditions
 };
 
 struct PairResult {
@@ -30,7 +30,7 @@ struct PairResult {
     std::string
         higher;  // a, b or "" if equal: by the difference of people, or by the pooled shares where that is not known
     PeopleTest people;
-    double p_holm = 1.0;                // of people.p, over the pairs of the table that can be tested
+    double p_holm = 1.0;                // of people.p, over the pairs of conditions that can be tested
     double p_permutation_holm = 1.0;    // of people.p_permutation
     std::optional<Interval> bootstrap;  // of p_a - p_b, over participants
     int participants_in_both = 0;
@@ -39,6 +39,12 @@ struct PairResult {
     Interval newcombe_paired;                // of p_a - p_b; only with `paired`
     double mcnemar_p = 1.0;                  // only with `paired`
 };
+
+// Within what p_holm is corrected, for all tables of a report.
+inline constexpr const char* kHolmFamilies =
+    "over all pairs of conditions of one quantity or figure; between groups over all comparisons of one quantity, "
+    "interactions apart; of choices against chance over all conditions, single comparisons apart; the rows of each "
+    "group by themselves";
 
 // Compares all conditions that have a share, in the order of seen.conditions. Above kMostResampledPairs pairs, or above
 // kMostResampledPeople people in all pairs together, what resamples people (bootstrap, permutation) is left out: it would
@@ -52,7 +58,7 @@ std::vector<PairResult> compare_conditions(const Observations& seen, Quantity qu
                                            const BootstrapOptions& options);
 
 // One condition between two groups; or with `condition_b` how much the two conditions' difference differs between the
-// groups, which is the interaction of a mixed design.
+// groups, which is the interaction of a mixed design. Of PPV no interaction is tested.
 struct GroupResult {
     Quantity quantity = Quantity::sensitivity;
     std::string condition;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "files/text.h"
+#include "study/comparisons.h"
 #include "study/order_balance.h"
 #include "study/protocol_checks.h"
 
@@ -123,7 +124,8 @@ std::string analysis_part(const Protocol& protocol) {
         "\n## Analysis\n\n| | |\n| --- | --- |\n" +
         sheet_row("primary comparison", sheet_value(primary_text(protocol))) +
         sheet_row("all other comparisons",
-                  "as the primary one, p corrected by Holm for all pairs of a table; exploratory") +
+                  std::string("as the primary one, exploratory; p corrected by Holm ") + kHolmFamilies +
+                      (protocol.groups.size() > 1 ? "; interactions of PPV are not tested" : "")) +
         sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
     if (any_pairs(protocol, false)) {
         out +=

@@ -105,7 +105,7 @@ files::Json report_json(const Report& report) {
         {"se_ci", "Wilson score"},
         {"pairs", "paired t over participants, Welch's t between groups; permutation of signs or groups"},
         {"ppv_pairs", "as pairs, of the ratio sum k / sum n, with the jackknife's standard error"},
-        {"p_holm", "Holm over all pairs of the list that can be tested, p of the t test"},
+        {"p_holm", std::string("Holm of the tests that can be computed, ") + kHolmFamilies},
         {"replication", "Li et al.: the combined interval of the facing Wilson arms"},
         {"ignores_clustering", "Newcombe 1998 method 10 for pairs; McNemar's exact test; exact binomial"},
         {"bootstrap_ci", "bootstrap over participants: expanded percentiles, with acceleration"},

@@ -234,7 +234,8 @@ std::string report_markdown(const Report& report) {
     out +=
         "\nTests are over participants: design within = Student's t of each person's difference a - b, design "
         "between = Welch's t of two groups; p_permutation = exact permutation of signs, or of groups (drawn above " +
-        whole(kMostExactPeople) + " people). p_holm = corrected for all pairs of the table. " +
+        whole(kMostExactPeople) + " people). p_holm = corrected by Holm " + kHolmFamilies + ". " +
+        (report.groups.empty() ? "" : "Interactions of PPV are not tested. ") +
         (report.primary ? "The primary comparison is not corrected. " : "No protocol states a primary comparison. ") +
         "Intervals at " + level +
         " (the staircases' table has its own): low, high = of the difference, by t; bootstrap = from " +

@@ -31,7 +31,7 @@ constexpr std::array kColumnTexts{
     ColumnText{"groups", "condition", "under which the groups are compared"},
     ColumnText{"primary", "condition", "under which two groups are compared; n/a: two conditions are compared"},
     ColumnText{"", "minus_condition",
-               "the difference condition - minus_condition is compared; n/a: the condition alone"},
+               "the difference condition - minus_condition is compared, but not of ppv; n/a: the condition alone"},
     ColumnText{"", "higher",
                "which of a and b is higher, by the difference of people where that is known; n/a: neither"},
     // all displays
@@ -73,7 +73,15 @@ constexpr std::array kColumnTexts{
     ColumnText{"", "p", "two-sided p of the test, not corrected"},
     ColumnText{"pairs_replication", "p", "of the test of Li et al., which ignores clustering"},
     ColumnText{"ppv_pairs_replication", "p", "of the test of Li et al., which ignores clustering"},
-    ColumnText{"", "p_holm", "p corrected by Holm for all pairs of the table"},
+    ColumnText{"", "p_holm", "p corrected by Holm over all pairs of conditions; the rows of each group by themselves"},
+    ColumnText{"groups", "p_holm",
+               "p corrected by Holm over all comparisons of the same quantity; those with minus_condition apart"},
+    ColumnText{"choices", "p_holm",
+               "p corrected by Holm over all conditions, and apart from them over all single comparisons; the rows of "
+               "each group by themselves"},
+    ColumnText{"free_response_tests", "p_holm",
+               "p corrected by Holm over all pairs of conditions of the same figure; the rows of each group by "
+               "themselves"},
     ColumnText{"", "p_permutation", "p of the permutation of signs, or of groups"},
     ColumnText{"", "permutation", "exact: all permutations; drawn: 20,000 of them"},
     ColumnText{"", "status", "computed, or why it cannot be computed"},

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "files/text.h"
+#include "study/comparisons.h"
 #include "study/preregistration.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -34,7 +35,7 @@ TEST_CASE("preregistration: design, orders, primary test, stopping rule and hash
          {std::string("| SHA-256 of the protocol | " + protocol.sha256), std::string("| authors | A; B |"),
           std::string("sensitivity, conditions a - b"), std::string("two-sided t test"), std::string("map_sha256 abc"),
           std::string("| planned participants | 7 |"), std::string("| stopping rule | seven finished |"),
-          std::string("| 7 | all | 1 | a x 3, b x 3 |"), std::string("8 mm of its axis")}) {
+          std::string("| 7 | all | 1 | a x 3, b x 3 |"), std::string("8 mm of its axis"), std::string(kHolmFamilies)}) {
         CAPTURE(part);
         CHECK(contains(sheet, part));
     }

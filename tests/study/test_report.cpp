@@ -4,6 +4,7 @@
 
 #include "files/text.h"
 #include "study/report.h"
+#include "study/table_dictionary.h"
 #include "tests/close_to.h"
 #include "tests/error_message.h"
 
@@ -206,6 +207,43 @@ TEST_CASE("report: groups stand in every table, below the rows of all people") {
     CHECK(json["groups"]["I"]["conditions"]["b"]["tp"] == 15);
     CHECK(json["group_comparisons"].size() == 5);
     CHECK(contains(report_markdown(report), "| sensitivity | a | b | I | II | between | 10 | 10 |"));
+}
+
+TEST_CASE("report: p_holm is corrected within the families that report.md and the dictionaries name") {
+    Observations seen = paired_study();
+    for (const char* name : {"I", "II"}) index_of(name, seen.groups);
+    for (int person = 0; person < 20; ++person) {
+        seen.group_of.push_back(person < 8 ? 0 : 1);
+        for (int condition = 0; condition < 2; ++condition)
+            seen.choices.push_back({condition, person, -1, (person * 7 + condition * 5) % 11, 12});
+    }
+    const Report report = make_report(seen, {});
+    for (const Quantity quantity : {Quantity::sensitivity, Quantity::ppv, Quantity::correct}) {
+        for (const bool interaction : {false, true}) {
+            std::vector<double> p, p_holm;
+            for (const GroupResult& one : report.group_comparisons) {
+                if (one.quantity != quantity || one.condition_b.empty() == interaction) continue;
+                p.push_back(one.people.p);
+                p_holm.push_back(one.p_holm);
+            }
+            CHECK(p.size() == (!interaction ? 2u : quantity == Quantity::ppv ? 0u : 1u));
+            const std::vector<double> corrected = holm_of_known(p);
+            for (std::size_t i = 0; i < p.size(); ++i) CHECK((std::isnan(p[i]) || p_holm[i] == close_to(corrected[i])));
+        }
+    }
+    for (const Report& group : report.groups) CHECK(group.choice_pairs[0].p_holm == group.choice_pairs[0].people.p);
+    const std::string text = report_markdown(report);
+    CHECK(contains(text, std::string("p_holm = corrected by Holm ") + kHolmFamilies));
+    CHECK(contains(text, "Interactions of PPV are not tested"));
+    CHECK_FALSE(contains(report_markdown(make_report(paired_study(), {})), "Interactions"));
+    CHECK(contains(report_json(report)["methods"]["p_holm"].get<std::string>(), kHolmFamilies));
+    const auto family = [](const char* table) {
+        return dictionary_of({table, "", {"p_holm"}, {}})["p_holm"]["Description"].get<std::string>();
+    };
+    CHECK(contains(family("groups"), "of the same quantity; those with minus_condition apart"));
+    CHECK(contains(family("choice_pairs"), "over all pairs of conditions; the rows of each group by themselves"));
+    CHECK(contains(family("choices"), "over all conditions, and apart from them over all single comparisons"));
+    CHECK(contains(family("free_response_tests"), "of the same figure"));
 }
 
 TEST_CASE("report: tables have a value in every column, and Markdown keeps its bars") {
