@@ -42,15 +42,12 @@ UsedNames used_names(const Observations& seen, int Observation::*which, const st
     return out;
 }
 
-// True if every hit and miss names its person and its nodule.
-bool names_all(const Observations& seen) {
-    bool any = false;
-    for (const Observation& row : seen.rows) {
-        if (row.tp + row.fn == 0) continue;
-        if (!is_judged_nodule(row)) return false;
-        any = true;
-    }
-    return any;
+// Why there is no model: some hits and misses do not name their person or their nodule. Empty if all do.
+std::string unnamed(const UnnamedJudgements& counts) {
+    const std::int64_t n = counts.no_participant > 0 ? counts.no_participant : counts.no_nodule;
+    if (n == 0) return "";
+    return std::string("cannot be computed, because the ") + (counts.no_participant > 0 ? "participant" : "nodule") +
+           " of " + whole(n) + " of " + whole(counts.all) + " hits and misses is not known";
 }
 
 struct NamedMixed {
@@ -179,8 +176,10 @@ files::Json mixed_pair_json(const MixedPair& pair) {
 
 MixedReport mixed_report(const Observations& seen, double level) {
     MixedReport out;
-    if (!names_all(seen)) return out;
-    out.there = true;
+    const UnnamedJudgements counts = unnamed_judgements(seen);
+    out.there = counts.all > 0;
+    out.status = unnamed(counts);
+    if (!out.there || !out.status.empty()) return out;
     const NamedMixed named = mixed_data(seen);
     out.participants = named.data.participants;
     out.nodules = named.data.nodules;
@@ -202,8 +201,9 @@ void add_mixed(const MixedReport& found, files::Json& report) {
     if (!found.there) return;
     files::Json& json = report["mixed_logistic"];
     json["status"] = found.status.empty() ? "computed" : found.status;
-    json["participants"] = found.participants;
-    json["nodules"] = found.nodules;
+    const auto known = [](int n) { return n > 0 ? files::Json(n) : files::Json(nullptr); };
+    json["participants"] = known(found.participants);
+    json["nodules"] = known(found.nodules);
     json["notes"] = found.notes;
     if (!found.status.empty()) return;
     json["log_likelihood"] = found.fit.log_likelihood;

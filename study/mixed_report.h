@@ -28,11 +28,11 @@ struct MixedPair {
 };
 
 struct MixedReport {
-    bool there = false;  // named people judged named nodules
+    bool there = false;  // there were nodules to find
     std::string status;  // empty, or why there are no numbers
     MixedFit fit;
-    int participants = 0;
-    int nodules = 0;
+    int participants = 0;  // 0: not all are known
+    int nodules = 0;       // 0: not all are known
     std::vector<MixedCondition> conditions;
     std::vector<MixedPair> pairs;
     double likelihood_ratio = 0.0;  // of all conditions against one log odds for all

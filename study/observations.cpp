@@ -174,6 +174,17 @@ void read_choices(files::Table& table, Observations& out) {
 
 }  // namespace
 
+UnnamedJudgements unnamed_judgements(const Observations& seen) {
+    UnnamedJudgements out;
+    for (const Observation& row : seen.rows) {
+        const std::int64_t n = row.tp + row.fn;
+        out.all += n;
+        if (row.participant < 0) out.no_participant += n;
+        if (row.nodule < 0) out.no_nodule += n;
+    }
+    return out;
+}
+
 int index_of(std::string_view name, std::vector<std::string>& names) {
     const auto at = std::find(names.begin(), names.end(), name) - names.begin();
     if (at == static_cast<std::ptrdiff_t>(names.size())) names.emplace_back(name);

@@ -103,6 +103,14 @@ struct Observations {
     std::vector<Replacement> replacements;   // whose trials are all excluded
 };
 
+// Hits and misses, and those among them that do not name their participant or their nodule.
+struct UnnamedJudgements {
+    std::int64_t all = 0;
+    std::int64_t no_participant = 0;
+    std::int64_t no_nodule = 0;
+};
+UnnamedJudgements unnamed_judgements(const Observations& seen);
+
 // Returns the index of `name`, which is added if it is new.
 int index_of(std::string_view name, std::vector<std::string>& names);
 

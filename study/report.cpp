@@ -204,6 +204,19 @@ void add_ratings(const std::vector<Answer>& answers, Report& report) {
     for (const Answer& one : answers) {
         if (done.emplace(one.condition, one.item).second) add_ratings(one, answers, report);
     }
+// Says how many hits and misses the tables of nodules leave out.
+void note_unnamed_nodules(const Observations& seen, Report& report) {
+    const UnnamedJudgements counts = unnamed_judgements(seen);
+    const bool table = std::any_of(report.conditions.begin(), report.conditions.end(),
+                                   [](const auto& one) { return !one.nodules.empty(); });
+    if (!table || counts.no_nodule == 0) return;
+    report.notes.push_back("The tables of nodules (nodules, pairs_ignoring_clustering) leave out " +
+                           std::to_string(counts.no_nodule) + " of " + std::to_string(counts.all) +
+                           " hits and misses, because " +
+                           (seen.from_logs ? "their logs have no settings that name the nodules"
+                                           : "the counts do not name their nodules"));
+}
+
 }
 
 }  // namespace
@@ -288,3 +301,4 @@ Report make_report(const Observations& given, const ReportOptions& options) {
 }
 
 }  // namespace palpa::study
+    note_unnamed_nodules(seen, report);

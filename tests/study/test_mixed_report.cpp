@@ -51,8 +51,12 @@ TEST_CASE("mixed report: it needs names, several nodules, and a study that is no
     Observations seen = observed_answers("glmm2.csv");
     CHECK(contains(lme4_script(mixed_report(seen, 0.95)), "glmer(cbind(found, missed)"));
     seen.rows[0].participant = -1;
-    CHECK(mixed_of(seen).is_null());
+    const Json unnamed = mixed_of(seen);
+    CHECK(unnamed["status"] == "cannot be computed, because the participant of 1 of " +
+                                   std::to_string(seen.rows.size()) + " hits and misses is not known");
+    CHECK(unnamed["participants"].is_null());
     CHECK(lme4_script(mixed_report(seen, 0.95)).empty());
+    CHECK(mixed_of({}).is_null());
     seen = observed_answers("glmm2.csv");
     for (Observation& row : seen.rows) row.nodule = 0;
     CHECK(contains(mixed_of(seen)["status"].get<std::string>(), "one nodule only"));

@@ -246,6 +246,26 @@ TEST_CASE("report: p_holm is corrected within the families that report.md and th
     CHECK(contains(family("free_response_tests"), "of the same figure"));
 }
 
+TEST_CASE("report: nodules that are not known are counted, and named as the reason why there is no mixed model") {
+    Observations seen = paired_study();
+    const auto left_out = [&] {
+        return contains(report_markdown(make_report(seen, {})),
+                        "The tables of nodules (nodules, pairs_ignoring_clustering) leave out 2 of 80 hits and misses, "
+                        "because the counts do not name their nodules");
+    };
+    CHECK_FALSE(left_out());
+    for (Observation& row : seen.rows) {
+        if (row.participant == 4 && row.condition == 1) row.nodule = -1;
+    }
+    CHECK(left_out());
+    CHECK(contains(report_markdown(make_report(seen, {})),
+                   "The mixed logistic model cannot be computed, because the nodule of 2 of 80 hits and misses is not "
+                   "known."));
+    seen.from_logs = true;
+    CHECK(contains(report_json(make_report(seen, {}))["notes"].back().get<std::string>(),
+                   "because their logs have no settings that name the nodules"));
+}
+
 TEST_CASE("report: tables have a value in every column, and Markdown keeps its bars") {
     Observations seen = paired_study();
     seen.conditions[0] = "a|b";
