@@ -19,6 +19,7 @@ constexpr double kLapses[] = {0.0, 0.02, 0.04};
 constexpr double kJndOfSd = 0.6744897501960817;  // Phi(0.6745) = 0.75
 constexpr double kEqualEntropy = 1e-9;           // nat: which of two such levels is taken may depend on the machine
 constexpr int kFirstReversals = 2;               // on the way from the first level to the threshold
+constexpr double kTail = 0.025;                  // of the posterior beyond each limit of the interval
 
 double normal_share(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
@@ -131,11 +132,12 @@ void estimate_jnd(const std::vector<PosteriorPoint>& posterior, StaircaseEstimat
     for (std::size_t i = 0; i < posterior.size(); ++i)
         weights[i / std::size(kLapses) % static_cast<std::size_t>(kSdSteps)] += posterior[i].weight;
     const double mean = std::inner_product(log_sd.begin(), log_sd.end(), weights.begin(), 0.0);
-    const double low = quantile_of(log_sd, weights, 0.025), high = quantile_of(log_sd, weights, 0.975);
+    const double low = quantile_of(log_sd, weights, kTail), high = quantile_of(log_sd, weights, 1.0 - kTail);
     out.jnd = kJndOfSd * std::exp(mean);
     out.jnd_low = kJndOfSd * std::exp(low);
     out.jnd_high = kJndOfSd * std::exp(high);
-    if (low <= log_sd.front() || high >= log_sd.back()) out.status = "open";
+    // the tails of the flat prior end 1.025 cells from the ends, and these points lie 1.5 cells from them
+    if (low <= log_sd[1] || high >= log_sd[log_sd.size() - 2]) out.status = "open";
 }
 
 }  // namespace

@@ -67,8 +67,9 @@ struct StaircaseEstimate {
     double jnd = 0.0;
     double jnd_low = 0.0;
     double jnd_high = 0.0;
-    // ok; or open: fewer than 4 reversals, more than a tenth of the answers asked for a level that is not there, or the
-    // interval reaches an end of the grid
+    // ok; or open: a limit of the interval lies beyond the last but one point of the grid of sd, as both do without
+    // any answer; and of weighted up-down fewer than 4 reversals, or more than a tenth of the answers asked for a level that
+    // is not there
     std::string status;
 };
 StaircaseEstimate estimate_of(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers);

@@ -206,3 +206,23 @@ TEST_CASE("staircase: answers at levels that were not asked for are counted, by 
         CHECK(answers_at_other_levels(task, answers) == 1);
     }
 }
+
+TEST_CASE("staircase: an interval that the answers have hardly moved from the prior's is open, a good one is not") {
+    MESSAGE("seed " << kStaircaseSeed);
+    Random random(kStaircaseSeed);
+    const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/threshold.json");
+    StaircaseTask task = protocol.staircase;
+    CHECK(estimate_of(task, {}).status == "open");
+    const PosteriorPoint observer{0.0, 0.2, 0.02, 1.0};
+    for (const int trials : {1, 4}) {
+        task.trials = trials;
+        for (int i = 0; i < 5; ++i) CHECK(estimate_of(task, answers_of(task, observer, random)).status == "open");
+    }
+    task.trials = protocol.staircase.trials;
+    for (int i = 0; i < 5; ++i) {
+        const StaircaseEstimate e = estimate_of(task, answers_of(task, observer, random));
+        CAPTURE(percent_of(e.jnd_low));
+        CAPTURE(percent_of(e.jnd_high));
+        CHECK(e.status == "ok");
+    }
+}
