@@ -26,13 +26,18 @@ std::size_t counted(const People& people) {
         std::count_if(people.begin(), people.end(), [](const auto& one) { return one && one->n > 0; }));
 }
 
+// The z of bootstrap_share(), of people in so many strata.
+double expanded_z(std::size_t people, std::size_t strata, double level) {
+    const auto m = static_cast<double>(people), df = static_cast<double>(people - strata);
+    return files::student_quantile(level, df) * std::sqrt(m / df);
+}
+
 Interval limits(std::vector<double>& values, std::size_t people, std::size_t strata, double skew, double level) {
     if (values.empty() || people <= strata) return kUnknown;
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     constexpr double kRounding = 1e-12;
     if (*most - *least < kRounding) return kUnknown;
-    const auto m = static_cast<double>(people), df = static_cast<double>(people - strata);
-    const double z = files::student_quantile(level, df) * std::sqrt(m / df);
+    const double z = expanded_z(people, strata, level);
     constexpr double kMostSkew = 0.5;  // far from 1, where a limit would run away; reached below four people only
     const double az = std::clamp(skew * z, -kMostSkew, kMostSkew);
     return {files::reordered_quantile(values, files::normal_probability(-z / (1.0 + az))),
@@ -147,6 +152,13 @@ Interval bootstrap_difference(const People& a, const People& b, const BootstrapO
         if (sums.n_a > 0.0 && sums.n_b > 0.0) values.push_back(share(sums.k_a, sums.n_a) - share(sums.k_b, sums.n_b));
     }
     return limits(values, m, static_cast<std::size_t>(used), 0.0, options.level);
+}
+
+double resamples_needed(double level, std::size_t people) {
+    constexpr double kBeyond = 10.0;
+    const double needed = kBeyond / files::normal_probability(-expanded_z(people, 1, level));
+    const double unit = std::pow(10.0, std::floor(std::log10(needed)) - 1.0);
+    return unit * std::ceil(needed / unit);
 }
 
 }  // namespace palpa::study

@@ -1,6 +1,7 @@
 #pragma once
 // Bootstrap over participants, since people are independent, but the nodules and trials of one person are not.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "study/people.h"
@@ -33,5 +34,9 @@ Interval bootstrap_share(const People& people, const BootstrapOptions& options);
 // of both conditions, of a only and of b only are resampled separately, so that every resample has the design of the
 // study.
 Interval bootstrap_difference(const People& a, const People& b, const BootstrapOptions& options);
+
+// Returns how many resamples put ten of them beyond each limit of bootstrap_share() with a = 0, which is 10 / Phi(-z),
+// rounded up to two digits. With fewer a limit is near the least or the greatest resample, whatever the level.
+double resamples_needed(double level, std::size_t people);
 
 }  // namespace palpa::study

@@ -161,6 +161,31 @@ void note_few_people(Report& report) {
                            ". Bootstrap intervals of so few cover less than they say, and no test can show much");
 }
 
+// Returns of how many people the smallest resampled set is, 0 if nobody is resampled.
+std::size_t fewest_resampled(const Report& report) {
+    std::size_t fewest = 0;
+    const auto add = [&](std::size_t people) {
+        if (people > 0 && (fewest == 0 || people < fewest)) fewest = people;
+    };
+    for (const ConditionResult& one : report.conditions) {
+        if ((one.se && one.se->bootstrap) || (one.ppv && one.ppv->bootstrap)) add(at(one.participants));
+    }
+    for (const ChoiceResult& one : report.choices) {
+        if (one.correct.bootstrap && one.over_people) add(at(one.over_people->people_a));
+    }
+    for (const auto* pairs : {&report.pairs, &report.ppv_pairs, &report.choice_pairs}) {
+        for (const PairResult& one : *pairs) {
+            const bool within = one.people.design == Design::within;
+            if (one.bootstrap) add(at(one.people.people_a + (within ? 0 : one.people.people_b)));
+        }
+    }
+    for (const PsychometricResult& one : report.psychometrics.curves) {
+        if (one.method == IntervalMethod::bootstrap) add(at(one.participants));
+    }
+    for (const Report& group : report.groups) add(fewest_resampled(group));
+    return fewest;
+}
+
 // The jackknife's error, and so the t test of PPV, does not hold where one condition has far fewer marks than another.
 void note_uneven_marks(Report& report) {
     constexpr std::int64_t kUneven = 2;
@@ -177,6 +202,36 @@ void note_uneven_marks(Report& report) {
     report.notes.push_back("WARNING: " + most->name + " has " + std::to_string(marks(*most)) + " marks, " +
                            fewest->name + " " + std::to_string(marks(*fewest)) +
                            ". With so uneven numbers the t test of PPV does not keep its level; its permutation does");
+}
+
+// Says how many hits and misses the tables of nodules leave out.
+void note_unnamed_nodules(const Observations& seen, Report& report) {
+    const UnnamedJudgements counts = unnamed_judgements(seen);
+    const bool table = std::any_of(report.conditions.begin(), report.conditions.end(),
+                                   [](const auto& one) { return !one.nodules.empty(); });
+    if (!table || counts.no_nodule == 0) return;
+    report.notes.push_back("The tables of nodules (nodules, pairs_ignoring_clustering) leave out " +
+                           std::to_string(counts.no_nodule) + " of " + std::to_string(counts.all) +
+                           " hits and misses, because " +
+                           (seen.from_logs ? "their logs have no settings that name the nodules"
+                                           : "the counts do not name their nodules"));
+}
+
+// Says that the level asks for more resamples than there are: the limits are then near the least and the greatest draw.
+// Of fewer than ten people it speaks as of ten, since note_few_people() warns of them.
+void note_few_resamples(Report& report) {
+    constexpr std::size_t kFew = 10;
+    constexpr double kMost = 1e6;  // that can be asked for
+    const std::size_t people = fewest_resampled(report);
+    const BootstrapOptions& options = report.options.bootstrap;
+    const double needed = resamples_needed(options.level, std::max(people, kFew));
+    if (people == 0 || needed <= options.resamples) return;
+    const std::string level = files::short_number(100.0 * options.level) + " %";
+    report.notes.push_back(
+        "WARNING: bootstrap intervals at " + level + " of " + std::to_string(people) + " people need at least " +
+        (needed > kMost ? "1000000 resamples, the most that can be asked for: choose a lower level"
+                        : std::to_string(static_cast<std::int64_t>(needed)) + " resamples (--resamples)") +
+        "; of " + std::to_string(options.resamples) + " too few lie beyond the limits to tell where these are");
 }
 
 // Adds one row for answers on a scale, or one row for each text that was given.
@@ -204,19 +259,6 @@ void add_ratings(const std::vector<Answer>& answers, Report& report) {
     for (const Answer& one : answers) {
         if (done.emplace(one.condition, one.item).second) add_ratings(one, answers, report);
     }
-// Says how many hits and misses the tables of nodules leave out.
-void note_unnamed_nodules(const Observations& seen, Report& report) {
-    const UnnamedJudgements counts = unnamed_judgements(seen);
-    const bool table = std::any_of(report.conditions.begin(), report.conditions.end(),
-                                   [](const auto& one) { return !one.nodules.empty(); });
-    if (!table || counts.no_nodule == 0) return;
-    report.notes.push_back("The tables of nodules (nodules, pairs_ignoring_clustering) leave out " +
-                           std::to_string(counts.no_nodule) + " of " + std::to_string(counts.all) +
-                           " hits and misses, because " +
-                           (seen.from_logs ? "their logs have no settings that name the nodules"
-                                           : "the counts do not name their nodules"));
-}
-
 }
 
 }  // namespace
@@ -296,9 +338,10 @@ Report make_report(const Observations& given, const ReportOptions& options) {
                                " people the bootstrap and the permutation tests are left out");
     }
     note_few_people(report);
+    note_few_resamples(report);
     note_uneven_marks(report);
+    note_unnamed_nodules(seen, report);
     return report;
 }
 
 }  // namespace palpa::study
-    note_unnamed_nodules(seen, report);

@@ -118,3 +118,11 @@ TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the norm
     const Interval between = bootstrap_difference(a, b, {4000, 1, 0.95});
     CHECK(0.5 * (between.high - between.low) == close_to(std::sqrt(2.0) * arm).epsilon(0.1));
 }
+
+TEST_CASE("bootstrap: how many resamples put ten of them beyond each limit, more for fewer people") {
+    CHECK(resamples_needed(0.95, 1'000'000) == close_to(410.0));  // 10 / 0.025, and a little for Student's t
+    CHECK(resamples_needed(0.99, 1'000'000) == close_to(2100.0));
+    for (const std::size_t people : {10u, 20u, 50u, 1000u}) CHECK(resamples_needed(0.95, people) <= 2000.0);
+    CHECK(resamples_needed(0.999, 12) > 1e6);
+    CHECK(resamples_needed(0.999, 12) > resamples_needed(0.999, 50));
+}

@@ -67,7 +67,8 @@ TEST_CASE("psychometric report: all people and each person, by condition, and th
     CHECK(pair["b"] == "on");
     CHECK(pair["jnd_ratio"].get<double>() > 2.0);
     CHECK(pair["ci"][0].get<double>() > 1.5);
-    CHECK(json["notes"].empty());
+    REQUIRE(json["notes"].size() == 1);
+    CHECK(contains(json["notes"][0].get<std::string>(), "of 12 people need at least"));  // more than 200 resamples
 }
 
 TEST_CASE("psychometric report: people who did one condition alone do not change the ratio of those who did both") {
@@ -128,8 +129,9 @@ TEST_CASE("psychometric report: answers at chance, at a step and at one level ha
 
 TEST_CASE("psychometric report: few people are named as few; without choices there is nothing") {
     const Report few = make_report(two_conditions(3, 17), few_resamples());
-    REQUIRE(few.notes.size() == 2);
+    REQUIRE(few.notes.size() == 3);
     CHECK(contains(few.notes[0], "draws from 3 people"));
+    CHECK(contains(few.notes[2], "of 3 people need"));  // more than 200 resamples
     CHECK_FALSE(report_json(make_report({}, {})).contains("psychometric"));
 }
 

@@ -266,6 +266,30 @@ TEST_CASE("report: nodules that are not known are counted, and named as the reas
                    "because their logs have no settings that name the nodules"));
 }
 
+TEST_CASE("report: a level that needs more resamples than there are is warned of, the default never") {
+    const auto warning = [](double level, int resamples) {
+        ReportOptions options;
+        options.bootstrap.level = level;
+        options.bootstrap.resamples = resamples;
+        const Json json = report_json(make_report(paired_study(), options));
+        for (const Json& note : json["notes"]) {
+            if (contains(note.get<std::string>(), "resamples")) return note.get<std::string>();
+        }
+        return std::string();
+    };
+    CHECK(warning(0.95, 2000).empty());
+    CHECK(
+        contains(warning(0.95, 100), "WARNING: bootstrap intervals at 95 % of 20 people need at least 630 resamples"));
+    CHECK(contains(warning(0.99, 2000), "of 20 people need"));
+    CHECK(contains(warning(0.99, 2000), "; of 2000 too few lie beyond the limits"));
+    CHECK(warning(0.99, 100'000).empty());
+    CHECK(contains(warning(0.9999, 1'000'000),
+                   "need at least 1000000 resamples, the most that can be asked for: choose a lower level"));
+    Observations few = paired_study();
+    std::erase_if(few.rows, [](const Observation& row) { return row.participant >= 3; });
+    for (const std::string& note : make_report(few, {}).notes) CHECK_FALSE(contains(note, "resamples"));
+}
+
 TEST_CASE("report: tables have a value in every column, and Markdown keeps its bars") {
     Observations seen = paired_study();
     seen.conditions[0] = "a|b";
