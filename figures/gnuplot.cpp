@@ -1,6 +1,7 @@
 #include "figures/gnuplot.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 #include <string_view>
@@ -33,6 +34,15 @@ std::string shell_quoted(const std::string& text) {
 }
 
 bool run(const std::string& command) { return std::system(command.c_str()) == 0; }
+
+// Runs gnuplot by this command. What it says is told only if it fails: else it speaks of tics that it left out.
+bool draw(const std::string& command, const std::filesystem::path& said) {
+    const bool good = run(command + " 2> " + shell_quoted(said.string()));
+    std::error_code none;
+    if (!good && std::filesystem::exists(said, none)) std::fputs(files::read_text(said).c_str(), stderr);
+    std::filesystem::remove(said, none);
+    return good;
+}
 
 bool is_installed() { return run("command -v gnuplot >/dev/null 2>&1"); }
 constexpr const char* kMissing = "gnuplot is not installed (package gnuplot-nox)";
@@ -82,7 +92,7 @@ void draw_figure(const std::string& script, const std::filesystem::path& name, i
     const std::string commands = aside + ".gp";
     // the figure comes on standard output, since gnuplot's own quotes do not hold every name of a folder
     files::write_text_atomically(commands, "set encoding utf8\n" + set + script + "\nunset output\n");
-    const bool drawn = run("gnuplot " + shell_quoted(commands) + " > " + shell_quoted(aside));
+    const bool drawn = draw("gnuplot " + shell_quoted(commands) + " > " + shell_quoted(aside), aside + ".said");
     const bool whole = drawn && is_whole(aside, name.extension().string());
     ::unlink(commands.c_str());
     // without this, a viewer may blend cells with each other and with gaps
@@ -108,7 +118,8 @@ std::string draw_script(const std::filesystem::path& script, const std::string& 
     std::string cut_off;
     const std::string there = "cd " + shell_quoted(std::filesystem::absolute(script).parent_path().string());
     for (const std::string kind : {"png", "svg", "pdf"}) {
-        if (!run(there + " && gnuplot -e \"kind='" + kind + "'\" " + shell_quoted(name)))
+        if (!draw(there + " && gnuplot -e \"kind='" + kind + "'\" " + shell_quoted(name),
+                  std::filesystem::absolute(script.string() + ".said")))
             throw std::runtime_error("gnuplot could not draw " + script.string() + "; " + kept);
         for (const std::string& figure : figures_of(script)) {
             const std::filesystem::path file = script.parent_path() / (figure + kind);

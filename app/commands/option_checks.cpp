@@ -74,7 +74,10 @@ void refuse_what_is_no_value(CLI::App& command) {
         // transform() asks before the option's own checks: CLI11's check of a range says of a word that it is "not in range"
         if (type.rfind("FLOAT", 0) == 0) option->transform(CLI::Validator(refuse_no_number, ""));
         if (type.rfind("INT", 0) == 0) option->transform(CLI::Validator(refuse_no_whole_number, ""));
-        if (type.rfind("UINT", 0) == 0) option->transform(CLI::Validator(refuse_wrapped, ""));
+        // an option's own range says which numbers it takes
+        const bool range = type.find(" in [") != std::string::npos;
+        if (type.rfind("UINT", 0) == 0)
+            option->transform(CLI::Validator(range ? refuse_no_whole_number : refuse_wrapped, ""));
         if (!type.empty()) option->transform(CLI::Validator(refuse_empty, ""));  // flags have no value
     }
     for (CLI::App* below : command.get_subcommands({})) refuse_what_is_no_value(*below);

@@ -62,6 +62,7 @@ void check_displays(const StudyRun& run) {
 bool plain(const std::string& code) { return code.size() <= 20 && study::is_code(code); }
 
 const char* what_is_wrong(const std::string& code) {
+    if (code.empty()) return "Enter a code of up to 20 letters and digits.";
     return study::reads_as_missing(code)
                ? "Tables in pandas and R take this code for a missing value. Enter another one."
                : "Enter up to 20 letters and digits.";

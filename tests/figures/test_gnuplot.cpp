@@ -1,5 +1,8 @@
+#include <cstdio>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <stdexcept>
+#include <unistd.h>
 
 #include "figures/gnuplot.h"
 #include "files/text.h"
@@ -54,4 +57,27 @@ TEST_CASE("gnuplot: figures are drawn in folders of any name") {
             CHECK(std::filesystem::exists(folder / name / figure));
         }
     }
+}
+
+TEST_CASE("gnuplot: what it says while it draws is told only if it fails") {
+    if (!test::has_gnuplot()) return;
+    const test::TemporaryFolder folder;
+    const auto told = [&](const std::string& script) {
+        std::fflush(stderr);
+        const int kept = ::dup(2);
+        CHECK(std::freopen((folder / "told").c_str(), "w", stderr) != nullptr);
+        try {
+            draw_figure(script, folder / "a.png", 300, 200);
+        } catch (const std::runtime_error&) {
+        }
+        std::fflush(stderr);
+        ::dup2(kept, 2);
+        ::close(kept);
+        return files::read_text(folder / "told");
+    };
+    CHECK(told("print 'noise'\nplot x").empty());
+    CHECK(std::filesystem::exists(folder / "a.png"));
+    CHECK(told("print 'noise'\nexit status 3").find("noise") == 0);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        CHECK(entry.path().extension() != ".said");
 }

@@ -35,6 +35,7 @@ std::string refusal(std::vector<std::string> arguments) {
     below->add_option("--maybe", options.maybe);
     below->add_option("--several", options.several)->expected(2);
     below->add_option("--seed", options.seed);
+    below->add_option("--seed-to-20", options.seed)->check(CLI::Range(0, 20));
     below->add_option("--count", options.count);
     below->add_flag("--flag", options.flag);
     below->add_option("--name", options.name);
@@ -111,4 +112,10 @@ TEST_CASE("option checks: a number from 0 upwards does not begin again at its en
     }
     CHECK(refusal({"18446744073709551615", "--seed"}).empty());
     CHECK(refusal({"-1", "--count"}).empty());
+}
+
+TEST_CASE("option checks: an unsigned number with a range of its own is refused with that range") {
+    CHECK(refusal({"20", "--seed-to-20"}).empty());
+    for (const char* value : {"-1", "21"}) CHECK(contains(refusal({value, "--seed-to-20"}), "not in range 0 to 20"));
+    CHECK(contains(refusal({"-1", "--seed"}), "expected a whole number from 0 to 18446744073709551615"));
 }

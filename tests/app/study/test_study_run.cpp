@@ -89,6 +89,8 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     enter_code("P 7", run);
     CHECK(at<step::Code>(run));
     CHECK(run.note == "Enter up to 20 letters and digits.");
+    enter_code("", run);
+    CHECK(run.note == "Enter a code of up to 20 letters and digits.");
     enter_code("P7", run);
     answer_questions(run);
     REQUIRE(run.progress.plan.trials.size() == 4);  // practice and test under each condition
