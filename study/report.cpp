@@ -228,9 +228,10 @@ void note_few_resamples(Report& report) {
     if (people == 0 || needed <= options.resamples) return;
     const std::string level = files::short_number(100.0 * options.level) + " %";
     report.notes.push_back(
-        "WARNING: bootstrap intervals at " + level + " of " + std::to_string(people) + " people need at least " +
-        (needed > kMost ? "1000000 resamples, the most that can be asked for: choose a lower level"
-                        : std::to_string(static_cast<std::int64_t>(needed)) + " resamples (--resamples)") +
+        "WARNING: bootstrap intervals at " + level + " of " + std::to_string(people) + " people need " +
+        (needed > kMost
+             ? "more than the 1000000 resamples that can be asked for, so choose a lower level"
+             : "at least " + std::to_string(static_cast<std::int64_t>(needed)) + " resamples (--resamples)") +
         "; of " + std::to_string(options.resamples) + " too few lie beyond the limits to tell where these are");
 }
 

@@ -284,7 +284,7 @@ TEST_CASE("report: a level that needs more resamples than there are is warned of
     CHECK(contains(warning(0.99, 2000), "; of 2000 too few lie beyond the limits"));
     CHECK(warning(0.99, 100'000).empty());
     CHECK(contains(warning(0.9999, 1'000'000),
-                   "need at least 1000000 resamples, the most that can be asked for: choose a lower level"));
+                   "need more than the 1000000 resamples that can be asked for, so choose a lower level"));
     Observations few = paired_study();
     std::erase_if(few.rows, [](const Observation& row) { return row.participant >= 3; });
     for (const std::string& note : make_report(few, {}).notes) CHECK_FALSE(contains(note, "resamples"));
