@@ -130,7 +130,8 @@ void find_snap(const ButtonModel& model, ButtonCurve& curve) {
     curve.peak_m = halved(travel_at(curve, std::max<std::size_t>(i, 2) - 2), travel_at(curve, i), rises);
     curve.peak_N = model(curve.peak_m, false, false).N;
     while (i < kTravels && !(F[i] > F[i - 1])) ++i;
-    curve.trough_m = i == kTravels ? curve.travel_m : halved(travel_at(curve, i - 2), travel_at(curve, i), falls);
+    if (i == kTravels) return;  // the stop comes first
+    curve.trough_m = halved(travel_at(curve, i - 2), travel_at(curve, i), falls);
     curve.trough_N = model(curve.trough_m, false, false).N;
 }
 
@@ -248,10 +249,10 @@ ButtonCurve press_button(const Button& button, const CoverTable& cover) {
         find_latch(model, *latch, curve);
     } else {
         find_snap(model, curve);
-        if (curve.snaps) curve.on_m = curve.trough_m;
+        if (curve.snaps && std::isfinite(curve.trough_m)) curve.on_m = curve.trough_m;
         if (button.on_m) curve.on_m = button.on_m;
     }
-    if (curve.snaps) curve.off_m = latch != nullptr ? 0.5 * curve.peak_m : curve.peak_m;
+    if (curve.on_m && curve.snaps) curve.off_m = latch != nullptr ? 0.5 * curve.peak_m : curve.peak_m;
     if (button.off_m) curve.off_m = button.off_m;
     check_switch(curve);
     curve.loss_J = loss_J(model, curve);

@@ -2,6 +2,7 @@
 // A push button: a soft cover over a support that snaps. Its force over travel, and its travel under a force.
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -57,8 +58,8 @@ struct ButtonCurve {
     bool snaps = false;  // the force falls somewhere while the button is pressed further; the next four are of that
     double peak_m = 0.0;
     double peak_N = 0.0;
-    double trough_m = 0.0;
-    double trough_N = 0.0;
+    double trough_m = std::numeric_limits<double>::quiet_NaN();  // NaN: the stop comes before a trough
+    double trough_N = std::numeric_limits<double>::quiet_NaN();
     std::optional<double> on_m, off_m;  // absent for a button that neither snaps nor names them
     double loss_J = 0.0;                // of one press to the stop and back, by travel
     int newton_iterations = 0;          // of the cover, in all

@@ -7,6 +7,7 @@
 #include "files/text.h"
 #include "mechanics/error.h"
 #include "mechanics/voxel_load.h"
+#include "parts/beam_doubts.h"
 #include "parts/cell_model.h"
 
 namespace palpa::parts {
@@ -100,6 +101,8 @@ PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<dou
     for (const BeamPiece& piece : out.pieces) out.height_m = std::max(out.height_m, piece.height_m);
     out.across = std::abs(load.direction[static_cast<std::size_t>(bends)]);
     if (!load_place_m) out.doubt = doubt_of(part, load, bends, out.length_m);
+    if (!load_place_m && out.doubt.empty())
+        out.doubt = section_doubt(part, load, {*part.axis, bends, span.low_m, span.high_m});
     return out;
 }
 

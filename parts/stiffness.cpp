@@ -30,6 +30,41 @@ void judge_strain(const CellStrain& unit, double force_N, MethodResult& result) 
         result.why_not = "strains reach " + files::short_number(100.0 * result.max_strain) + " %, which is not small";
 }
 
+// Whether some line across the force, through the middle of the load, meets fixed nodes on both sides of it.
+bool held_on_both_sides(const GridLevel& level, const Eigen::Matrix3Xd& load_N, int force_axis) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    const auto place = [&](int node) {
+        const auto& p = level.node_place[static_cast<std::size_t>(node)];
+        return Eigen::Vector3d(p[0], p[1], p[2]);
+    };
+    for (int node = 0; node < n_nodes(level); ++node) middle += load_N.col(node).norm() * place(node);
+    middle /= load_N.colwise().norm().sum();
+    for (int axis = 0; axis < 3; ++axis) {
+        const int other = 3 - axis - force_axis;
+        if (axis == force_axis) continue;
+        bool low = false, high = false;
+        for (int node = 0; node < n_nodes(level); ++node) {
+            if (level.free(axis, node) != 0.0 || std::abs(place(node)(other) - middle(other)) > 1.0) continue;
+            low |= place(node)(axis) < middle(axis) - 1.0;
+            high |= place(node)(axis) > middle(axis) + 1.0;
+        }
+        if (low && high) return true;
+    }
+    return false;
+}
+
+void judge_stretch(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
+                   MethodResult& out) {
+    const int along = largest_axis(load.direction);
+    const FilledBox box = filled_box(part.voxels);
+    const auto c = static_cast<std::size_t>(along);
+    const double height_m = part.voxels.frame.pitch_m * (box.high[c] - box.low[c]);
+    if (out.displacement_m <= kMostHeldDepth * height_m || !held_on_both_sides(model.level, load_N, along)) return;
+    out.why_not = "held on both sides of the load, the part goes " +
+                  files::short_number(out.displacement_m / height_m) +
+                  " times its height deep: it stretches, which small displacements leave out";
+}
+
 void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N, double energy_error,
                  MethodResult& out) {
     Eigen::Matrix3Xd u_m;
@@ -73,6 +108,17 @@ double tip_m(const PartBeam& beam, const PartLoad& load, Method method) {
     return along * load.force_N * beam_tip(beam.pieces, beam.clamped_low, method == Method::timoshenko).m_per_N;
 }
 
+// At the surface, for the lever of the straight beam, which no bent one exceeds.
+double greatest_bending_strain(const PartBeam& beam, double across_N) {
+    double most = 0.0;
+    for (const BeamPiece& piece : beam.pieces) {
+        const double lever_m =
+            beam.clamped_low ? beam.pieces.back().to_m - piece.from_m : piece.to_m - beam.pieces.front().from_m;
+        most = std::max(most, across_N * lever_m * 0.5 * piece.height_m / piece.section.bending_N_m2);
+    }
+    return most;
+}
+
 void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     const PartBeam beam = beam_of(part, load);
     out.why_not = beam.why_not;
@@ -84,9 +130,15 @@ void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     const double shear = tip_m(beam, load, Method::timoshenko) / bent_m - 1.0;
     if (out.method != Method::timoshenko && shear > kMostShear)
         out.why_not = "shear, which it leaves out, adds " + files::short_number(100.0 * shear) + " %";
+    if (out.method == Method::timoshenko && shear > kMostSoft)
+        out.why_not = "shear adds " + files::short_number(100.0 * shear) +
+                      " %: stiff layers on a soft core bend by themselves, which it leaves out";
     if (!beam.doubt.empty()) out.why_not = beam.doubt;
     if (beam.length_m < kLeastSlenderness * beam.height_m)
         out.why_not = "length over height is " + files::short_number(beam.length_m / beam.height_m) + ", below 5";
+    const double strain = greatest_bending_strain(beam, beam.across * load.force_N);
+    if (linear_range(strain) == LinearRange::red)
+        out.why_not = "strains reach up to " + files::short_number(100.0 * strain) + " %, which is not small";
     const double excess = bent_m / tip_m(beam, load, Method::elastica) - 1.0;
     if (out.method != Method::elastica && excess > kMostBend)
         out.why_not = "the beam bends too far: without large angles it goes " + files::short_number(100.0 * excess) +
@@ -111,6 +163,9 @@ void compare_methods(std::vector<MethodResult>& results) {
         if (best == nullptr || !result.answered || result.method == best->method) continue;
         result.error = result.displacement_m / best->displacement_m - 1.0;
         result.against = name_of(best->method);
+        if (result.method < Method::voxels && result.why_not.empty() && std::abs(*result.error) > kMostApart)
+            result.why_not = "`" + result.against + "` says " + files::short_number(1e3 * best->displacement_m) +
+                             " mm: the part is no such beam";
     }
 }
 
@@ -151,6 +206,7 @@ std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, c
                     load_N = unit_load_N(part, *model, load);
                 }
                 solve_cells(load, *model, load_N, options.energy_error, result);
+                judge_stretch(part, load, *model, load_N, result);
             }
         } catch (const MeshError& error) {
             throw files::InputError(part.file + ": " + error.what());

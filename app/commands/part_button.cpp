@@ -1,6 +1,7 @@
 // palpa part button
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -56,9 +57,12 @@ void print_table(const parts::Part& part, const mechanics::ButtonCurve& curve) {
     std::printf("%s, travel %s\n", files::printable(part.name).c_str(), mm(curve.travel_m).c_str());
     if (curve.snaps) {
         std::printf("  peak   %10s N at %s\n", files::short_number(curve.peak_N).c_str(), mm(curve.peak_m).c_str());
-        std::printf("  trough %10s N at %s, snap ratio %s\n", files::short_number(curve.trough_N).c_str(),
-                    mm(curve.trough_m).c_str(),
-                    files::short_number((curve.peak_N - curve.trough_N) / curve.peak_N).c_str());
+        if (std::isfinite(curve.trough_m))
+            std::printf("  trough %10s N at %s, snap ratio %s\n", files::short_number(curve.trough_N).c_str(),
+                        mm(curve.trough_m).c_str(),
+                        files::short_number((curve.peak_N - curve.trough_N) / curve.peak_N).c_str());
+        else
+            std::printf("  trough not reached within the travel\n");
     } else {
         std::printf("  does not snap\n");
     }

@@ -57,6 +57,16 @@ Button measured(std::vector<double> press_N, std::vector<double> release_N) {
 
 }  // namespace
 
+TEST_CASE("button: a stop before the trough leaves no trough, and nothing that goes on there") {
+    const ButtonCurve curve = press_button(truss_button(1.5e-3));
+    CHECK(curve.snaps);
+    CHECK(curve.peak_N == close_to(0.114218831724).epsilon(1e-10));
+    CHECK(std::isnan(curve.trough_m));
+    CHECK(std::isnan(curve.trough_N));
+    CHECK_FALSE(curve.on_m);
+    CHECK_FALSE(curve.off_m);
+}
+
 TEST_CASE("button: the two-bar truss snaps at the closed form's force and travel, to 1e-9") {
     const ButtonCurve curve = press_button(truss_button(4e-3));
     REQUIRE(curve.snaps);

@@ -325,6 +325,15 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("live: a test of parts does not turn them, since it hides nothing") {
+    Desk desk(PALPA_SOURCE_DIR "/assets/scenes/toothbrush.json");
+    turn_tissue(desk.window, desk.app);
+    CHECK(desk.app.session.scene.mapping.rotate_deg == 0);
+    CHECK_FALSE(desk.app.session.scene.mapping.flip);
+    turn_tissue(desk.window, desk.app);
+    CHECK(desk.app.session.scene.mapping.rotate_deg == 0);
+}
+
 TEST_CASE("live: a scene with a random turn is drawn in all eight, another one stays as it is") {
     Scene scene = load_scene(PALPA_SOURCE_DIR "/assets/scenes/random-turn.json");
     REQUIRE(scene.mapping.random_turn);

@@ -1,0 +1,165 @@
+#include "parts/beam_doubts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "files/text.h"
+#include "parts/cell_model.h"
+
+namespace palpa::parts {
+namespace {
+
+using namespace mechanics;
+
+// One slice of voxels across the axis. `across` counts along the direction that is neither the axis nor that of the load.
+struct Cut {
+    int across = 0;
+    int along = 0;              // voxels along the load
+    std::vector<int> material;  // -1: empty; across runs fastest
+    int at(int i, int k) const {
+        const bool inside = i >= 0 && k >= 0 && i < across && k < along;
+        return inside ? material[static_cast<std::size_t>(i + across * k)] : -1;
+    }
+};
+
+Cut slice_of(const Voxels& voxels, const BeamPlace& place, int s) {
+    const int third = 3 - place.axis - place.bends;
+    Cut out{voxels.size[static_cast<std::size_t>(third)], voxels.size[static_cast<std::size_t>(place.bends)], {}};
+    std::array<int, 3> x{};
+    x[static_cast<std::size_t>(place.axis)] = s;
+    for (int k = 0; k < out.along; ++k) {
+        for (int i = 0; i < out.across; ++i) {
+            x[static_cast<std::size_t>(third)] = i;
+            x[static_cast<std::size_t>(place.bends)] = k;
+            out.material.push_back(material_at(voxels, x[0], x[1], x[2]));
+        }
+    }
+    return out;
+}
+
+// Whether all filled voxels hang together by their sides.
+bool in_one_piece(const Cut& slice) {
+    std::vector<char> reached(slice.material.size(), 0);
+    std::vector<std::array<int, 2>> next;
+    const auto reach = [&](int i, int k) {
+        if (slice.at(i, k) < 0) return;
+        char& flag = reached[static_cast<std::size_t>(i + slice.across * k)];
+        if (flag == 0) next.push_back({i, k});
+        flag = 1;
+    };
+    const auto first = std::find_if(slice.material.begin(), slice.material.end(), [](int m) { return m >= 0; });
+    if (first == slice.material.end()) return true;
+    const auto place = static_cast<int>(first - slice.material.begin());
+    reach(place % slice.across, place / slice.across);
+    while (!next.empty()) {
+        const auto [i, k] = next.back();
+        next.pop_back();
+        reach(i - 1, k);
+        reach(i + 1, k);
+        reach(i, k - 1);
+        reach(i, k + 1);
+    }
+    const auto filled = std::count_if(slice.material.begin(), slice.material.end(), [](int m) { return m >= 0; });
+    return std::count(reached.begin(), reached.end(), 1) == filled;
+}
+
+struct Moments {
+    double weight = 0.0;    // sum of E
+    double middle = 0.0;    // across, voxels
+    double turned = 0.0;    // Iyz / sqrt(Iyy Izz)
+    int low = 0, high = 0;  // across, of what is filled
+};
+
+Moments moments_of(const Cut& slice, const std::vector<Material>& materials) {
+    Moments out;
+    out.low = slice.across;
+    double sum_k = 0.0, sum_ii = 0.0, sum_kk = 0.0, sum_ik = 0.0;
+    for (int k = 0; k < slice.along; ++k) {
+        for (int i = 0; i < slice.across; ++i) {
+            const int material = slice.at(i, k);
+            if (material < 0) continue;
+            const double E = materials[static_cast<std::size_t>(material)].young_Pa;
+            out.weight += E;
+            out.middle += E * (i + 0.5);
+            sum_k += E * k;
+            sum_ii += E * i * i;
+            sum_kk += E * k * k;
+            sum_ik += E * i * k;
+            out.low = std::min(out.low, i);
+            out.high = std::max(out.high, i + 1);
+        }
+    }
+    if (!(out.weight > 0.0)) return out;
+    const double i_mean = out.middle / out.weight - 0.5, k_mean = sum_k / out.weight;
+    const double ii = sum_ii / out.weight - i_mean * i_mean + 1.0 / 12.0;  // a voxel's own too
+    const double kk = sum_kk / out.weight - k_mean * k_mean + 1.0 / 12.0;
+    out.middle /= out.weight;
+    out.turned = std::abs(sum_ik / out.weight - i_mean * k_mean) / std::sqrt(ii * kk);
+    return out;
+}
+
+// What the slices of a beam have in common.
+struct Sections {
+    int count = 0, split = 0, turned = 0;
+    double split_at_m = 0.0;
+    double most_turned = 0.0;
+    double middle = 0.0;  // across, of all; voxels
+    double width = 0.0;   // mean; voxels
+};
+
+Sections sections_of(const Part& part, const BeamPlace& place) {
+    const std::vector<Material> materials = elastic_of(part);
+    const double h = part.voxels.frame.pitch_m;
+    const double origin_m = part.voxels.frame.origin_m[static_cast<std::size_t>(place.axis)];
+    const int slices = part.voxels.size[static_cast<std::size_t>(place.axis)];
+    const int first = std::clamp(static_cast<int>(std::floor((place.low_m - origin_m) / h + 0.5)), 0, slices);
+    const int end = std::clamp(static_cast<int>(std::floor((place.high_m - origin_m) / h + 0.5)), first, slices);
+    Sections out;
+    for (int s = first; s < end; ++s) {
+        const Cut slice = slice_of(part.voxels, place, s);
+        const Moments m = moments_of(slice, materials);
+        if (!(m.weight > 0.0)) continue;
+        ++out.count;
+        out.middle += m.middle;
+        out.width += m.high - m.low;
+        out.most_turned = std::max(out.most_turned, m.turned);
+        if (m.turned > kMostTurned) ++out.turned;
+        if (in_one_piece(slice)) continue;
+        if (out.split++ == 0) out.split_at_m = origin_m + (s + 0.5) * h;
+    }
+    out.middle /= std::max(1, out.count);
+    out.width /= std::max(1, out.count);
+    return out;
+}
+
+double largest_poisson(const Part& part) {
+    double most = 0.0;
+    for (const Material& material : elastic_of(part)) most = std::max(most, material.poisson);
+    return most;
+}
+
+}  // namespace
+
+std::string section_doubt(const Part& part, const PartLoad& load, const BeamPlace& place) {
+    const Sections sections = sections_of(part, place);
+    const double h = part.voxels.frame.pitch_m, length_m = place.high_m - place.low_m;
+    const auto mm = [](double m) { return files::short_number(1e3 * m) + " mm"; };
+    if (sections.split > kMostOdd * sections.count)
+        return "its section is in pieces that do not touch, from " + mm(sections.split_at_m) +
+               " along the axis: they bend one by one";
+    if (sections.turned > kMostOdd * sections.count)
+        return "its section is turned against the plane of the load (Iyz is " +
+               files::short_number(100.0 * sections.most_turned) + " % of sqrt(Iyy Izz)): it gives way sideways too";
+    const auto third = static_cast<std::size_t>(3 - place.axis - place.bends);
+    const double beside_m = std::abs(load.at_m[third] - part.voxels.frame.origin_m[third] - h * sections.middle);
+    if (!load.face && beside_m > 0.5 * h * sections.width)
+        return "the load is " + mm(beside_m) + " beside the axis and twists it";
+    const double poisson = largest_poisson(part);
+    if (h * sections.width > kPlate * length_m && poisson > 0.2)
+        return "it is " + mm(h * sections.width) + " wide and " + mm(length_m) + " long: a plate, up to " +
+               files::short_number(100.0 / (1.0 - poisson * poisson) - 100.0) + " % stiffer";
+    return "";
+}
+
+}  // namespace palpa::parts
