@@ -246,6 +246,8 @@ TEST_CASE("missing: a pen's trial does not begin before there is a pen") {
     script.wait(8.0);  // which comes meanwhile
     script.key(kEnter);
     script.wait(1.0);
+    script.key(kF);  // not yet: nothing was touched
+    script.stroke(0.4, true);
     script.key(kF);
     const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(script.close() + 5.0));
     const auto first = folder / "log/sub-07/beh/sub-07_task-palpation_run-01_events.tsv";
@@ -272,22 +274,26 @@ TEST_CASE("left: a trial that its pen leaves is interrupted with its marks, neve
     keys.key(kM);
     keys.wait(12.0);   // the pen goes, and comes back
     keys.key(kEnter);  // begin anew
-    keys.wait(1.0);
+    keys.wait(folder / "log/sub-07/beh/sub-07_task-palpation_run-02_events.tsv");
+    keys.wait(3.0);  // the pen's second stroke
     keys.key(kF);
     const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(keys.close() + 5.0));
     Script pen(folder / "pen.tsv");
     pen.wait(0.2);
+    pen.stroke(0.5, true);
+    pen.wait(folder / "log/sub-07/beh/sub-07_task-palpation_run-02_events.tsv");
     pen.stroke(0.5, true);
     pen.close();
     const std::string stem = (folder / "log/sub-07/beh/sub-07_task-palpation_run-01").string();
     std::thread hand([&] {
         CHECK(wait_for([&] { return std::filesystem::exists(stem + "_events.tsv"); }));
         sleep_s(1.0);
-        CHECK(play(folder / "pen.tsv") == 0);
+        std::thread strokes([&] { CHECK(play(folder / "pen.tsv") == 0); });
         CHECK(wait_for([&] { return text_of(stem + "_events.tsv").find("\tmark\t") != std::string::npos; }));
         plug("--disable");
         CHECK(wait_for([&] { return step_now(folder) == "device"; }));
         plug("--enable");
+        strokes.join();
     });
     CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
           0);

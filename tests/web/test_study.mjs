@@ -320,6 +320,7 @@ test('a full storage without a desk: the study waits and says so; exporting lets
         window.ways = ['put', 'add'].map((way) => [way, IDBObjectStore.prototype[way]]);
         for (const [way] of ways) IDBObjectStore.prototype[way] = () => { throw new DOMException('full', 'QuotaExceededError'); };
     });
+    await stroke(browser, 700, 400);
     await key(page, 'f');
     await page.waitForTimeout(800);
     await key(page, 'Enter');
