@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <openssl/x509v3.h>
 
@@ -111,7 +112,7 @@ std::optional<std::string> code_in(const std::string& body) {
 }
 
 void tell_lock(const CodeGuard::Result& result, const std::string& address, Desk& desk) {
-    const int wait_s = static_cast<int>(result.wait_s) + 1;
+    const int wait_s = static_cast<int>(std::ceil(result.wait_s));
     const std::string who = result.everybody ? "everybody" : address;
     desk.events.tell("locked", "too many wrong codes: " + who + " waits for " + std::to_string(wait_s) + " s",
                      {{"who", who}, {"wait_s", wait_s}});
@@ -129,7 +130,7 @@ void pair(const Request& req, const std::string& body, Desk& desk, Response& res
             return refuse(401, "another code", res);
         }
         if (result.answer == CodeGuard::Answer::locked) {
-            const int wait_s = static_cast<int>(result.wait_s) + 1;
+            const int wait_s = static_cast<int>(std::ceil(result.wait_s));
             res.set_header("Retry-After", std::to_string(wait_s));
             return answer(429, {{"error", "too many wrong codes"}, {"wait_s", wait_s}}, res);
         }

@@ -63,17 +63,22 @@ bool may_begin(const App& app) {
     return is_device_here(app) && run.pen != PenVerdict::no_pressure && run.devices_note.empty();
 }
 
-// Interrupts a trial that says nothing about the person: its device is gone, or nothing was touched in its time. It is
-// repeated.
-void interrupt_study_trial(bool device_gone, platform::Window& window, App& app) {
-    if (device_gone) session::note_event("device_gone", now_of(app, window), app.session);
+// Why a trial says nothing about the person: its device is gone, nothing was touched in its time, or its time went by while
+// the app was out of sight or the computer slept.
+enum class Interruption { device_gone, untouched, overslept };
+constexpr double kOverslept_s = 2.0;  // longer than any frame
+
+// Interrupts such a trial. It is repeated.
+void interrupt_study_trial(Interruption why_interrupted, platform::Window& window, App& app) {
+    if (why_interrupted == Interruption::device_gone)
+        session::note_event("device_gone", now_of(app, window), app.session);
     session::note_time(now_of(app, window), app.session);  // without touches no sample has told the time
     app.asked.reset();
     StudyRun& run = *study_of(app.doing);
     const std::string why = close_trial(app);
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
-    if (device_gone) return wait_for_device(true, run);
+    if (why_interrupted != Interruption::untouched) return wait_for_device(true, run);
     repeat_untouched(run);
 }
 
@@ -111,7 +116,8 @@ void check_letters(const study::Protocol& protocol) {
     for (const ShownText& shown : shown_texts(protocol)) {
         const std::string letter = first_letter_not_shown(shown.text);
         if (letter.empty()) continue;
-        throw files::bad_input(file, shown.key, files::shown(letter), "letters of the font: Latin, Greek, Cyrillic");
+        throw files::bad_input(file, shown.key, files::shown(letter),
+                               std::string("letters of the font: ") + letters_shown());
     }
 }
 
@@ -190,9 +196,12 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     }
     if (!trial_goes_on(run)) return;
     if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
-    if (!is_device_here(app) || devices_failed(window.now_s(), app)) return interrupt_study_trial(true, window, app);
-    if (now_of(app, window) < trial_ends_s(app)) return;
-    if (not_touched(app)) return interrupt_study_trial(false, window, app);
+    if (!is_device_here(app) || devices_failed(window.now_s(), app))
+        return interrupt_study_trial(Interruption::device_gone, window, app);
+    const double over_s = now_of(app, window) - trial_ends_s(app);
+    if (over_s < 0.0) return;
+    if (not_touched(app)) return interrupt_study_trial(Interruption::untouched, window, app);
+    if (over_s > kOverslept_s) return interrupt_study_trial(Interruption::overslept, window, app);
     act(platform::Action::finish, window, app);
 }
 

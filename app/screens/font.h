@@ -8,7 +8,7 @@ namespace palpa::app {
 std::string system_font_file();
 
 // Returns the first letter of `text` (UTF-8) that the panels cannot show with this font, in UTF-8; empty if they show all.
-// In browsers always empty: their font is that of the page.
 std::string first_letter_not_shown(const std::string& text);
+const char* letters_shown();  // their names, for messages
 
 }  // namespace palpa::app

@@ -300,7 +300,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;
     if (gui.pressed('z')) wishes.screen = Screen::scale;
-    if (gui.pressed('v')) wishes.screen = Screen::history;
+    if (gui.pressed('v') && !shown.notices.keeps_trials) wishes.screen = Screen::history;
     if (gui.pressed('b')) wishes.screen = Screen::maps;
     if (gui.pressed('r')) wishes.again = true;
     if (gui.pressed('s', true)) wishes.save_picture = true;

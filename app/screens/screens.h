@@ -105,7 +105,8 @@ struct OnScreen {
 
 // What is being typed in the present step of a study.
 struct StudyForm {
-    int step = -1;  // StudyRun::entered; another step begins with an empty form
+    int step = -1;     // StudyRun::entered; another step begins with an empty form
+    bool anew = true;  // and its page at its top
     std::string code;
     std::string offered;  // the code that the field began with
     // How many codes the step had refused when the field last got the focus.

@@ -182,6 +182,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
+    if (form.anew) ImGui::SetScrollY(0.0f);
     bool good = true;
     for (std::size_t i = 0; i < items.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
@@ -328,6 +329,7 @@ void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
+    if (form.anew) ImGui::SetScrollY(0.0f);
     const std::vector<std::string> names = due_nodules(run);
     if (names.empty()) {
         stepper(words::kNodulesFound, gui, form.typed.found);
@@ -423,6 +425,7 @@ void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& f
         draw_keeping(now_s, gui, run, wishes);
     } else {
         draw_step(run, now_s, gui, form, wishes);
+        form.anew = false;
     }
     end_panel("study", gui);
 }

@@ -60,7 +60,8 @@ const palpaTrials = (() => {
     };
     const asked_for = (key) => new URLSearchParams(location.search).get(key);
     const protocol = () => asked_for('protocol') === null ? '' : asked_for('protocol').replace(/\.json$/, '');
-    const kPlain = /^[0-9A-Za-z]{1,64}$/;
+    // as study/names.cpp: words that tables take for a missing value are no codes
+    const kPlain = /^(?!(NA|NULL|NaN|None|nan|null)$)[0-9A-Za-z]{1,64}$/;
     // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
     const participant = () => {
         const asked = asked_for('participant');

@@ -130,6 +130,22 @@ TEST_CASE("live: a surface or a trial that nobody touches in its time is repeate
     }
 }
 
+TEST_CASE("live: a trial whose time goes by while the app sleeps is repeated, and counts for nothing") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("time_limit_s": 0.3, "repeats": 2)");
+    REQUIRE(trial_goes_on(desk.run()));
+    desk.press();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    desk.step();
+    REQUIRE(at<step::Device>(desk.run()));
+    CHECK(std::get<step::Device>(desk.run().step).left);
+    CHECK(desk.run().progress.finished.empty());
+    const auto events = read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
+    CHECK(contains(events, "\tinterrupted\t"));
+    CHECK_FALSE(contains(events, "\tfinish\t"));
+    CHECK_FALSE(contains(events, "\tdevice_gone\t"));
+}
+
 TEST_CASE("live: finishing a study's trial that nobody has touched asks to press first, also in practice") {
     for (const char* task : {R"("repeats": 2)", R"("repeats": 2, "practice": {"trials": 1})"}) {
         CAPTURE(task);
