@@ -190,6 +190,15 @@ void note_missed(double rate_Hz, files::Json& json) {
     std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
 }
 
+void note_beyond(double deepest_m, const tangible::TangiblePlan& plan, files::Json& json) {
+    if (deepest_m <= plan.greatest_m) return;
+    const std::string note = "the press goes " + files::short_number(1e3 * deepest_m) +
+                             " mm deep, and the tissue is known for " + files::short_number(1e3 * plan.greatest_m) +
+                             " mm: further down the wanted force stays what it is there";
+    json["notes"].push_back(note);
+    std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
+}
+
 void note_less_depth(const session::Finger& finger, files::Json& json) {
     const double usual_m = tangible::PressMotion{}.depth_m;
     if (finger.motion.depth_m >= usual_m) return;
@@ -213,7 +222,11 @@ void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = std::make_shared<const tangible::TangiblePlan>(
         tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments, *scene.tangible)));
-    for (const devices::PressRow& row : press) check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
+    double deepest_m = 0.0;
+    for (const devices::PressRow& row : press) {
+        check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
+        if (row.depth_m > deepest_m) deepest_m = row.depth_m;  // NaN: a press by force
+    }
     const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
@@ -223,6 +236,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     if (!arguments.replay.empty()) json["replay"] = arguments.replay;
     if (real) name_limits(result.guarded, json);
     note_missed(plan->loop.rate_Hz, json);
+    note_beyond(deepest_m, *plan, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())

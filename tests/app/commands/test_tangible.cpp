@@ -148,6 +148,15 @@ TEST_CASE("tangible run: the recorded rows of a run give its commands again, wit
     CHECK_FALSE(std::filesystem::exists(strip.folder / "c"));
 }
 
+TEST_CASE("tangible run: a press deeper than the tissue is known for is named") {
+    const StripFolder strip;
+    files::write_text_atomically(strip.folder / "p.tsv", "t_s\tx_mm\ty_mm\tdepth_mm\n0\t0\t0\t0\n0.4\t0\t0\t9\n");
+    const Called deep =
+        palpa_with("tangible run " + strip.path("scene.json") + " --headless --json --press " + strip.path("p.tsv"));
+    CHECK(deep.status == 0);
+    CHECK(contains(deep.err, "goes 9 mm deep, and the tissue is known for 8 mm"));
+}
+
 TEST_CASE("tangible run: ticks that were missed are named") {
     const StripFolder strip;
     const Called live = palpa_with("tangible run " + strip.path("scene.json") +
