@@ -23,19 +23,49 @@ struct Cut {
     }
 };
 
-Cut slice_of(const Voxels& voxels, const BeamPlace& place, int s) {
-    const int third = 3 - place.axis - place.bends;
-    Cut out{voxels.size[static_cast<std::size_t>(third)], voxels.size[static_cast<std::size_t>(place.bends)], {}};
-    std::array<int, 3> x{};
-    x[static_cast<std::size_t>(place.axis)] = s;
-    for (int k = 0; k < out.along; ++k) {
-        for (int i = 0; i < out.across; ++i) {
-            x[static_cast<std::size_t>(third)] = i;
-            x[static_cast<std::size_t>(place.bends)] = k;
-            out.material.push_back(material_at(voxels, x[0], x[1], x[2]));
+// Goes through the slices of a beam in order. `cursor`: for each line along x, the first run that ends beyond the slice;
+// used by beams along x alone.
+struct Cutter {
+    const Voxels& voxels;
+    BeamPlace place;
+    std::vector<std::size_t> cursor;
+};
+
+void cut_along_x(int s, Cutter& cutter, Cut& out) {
+    const bool y_across = cutter.place.bends == 2;
+    for (int z = 0; z < cutter.voxels.size[2]; ++z) {
+        for (int y = 0; y < cutter.voxels.size[1]; ++y) {
+            const std::size_t line = line_of(cutter.voxels, y, z);
+            const std::vector<Run>& runs = cutter.voxels.lines[line];
+            std::size_t& run = cutter.cursor[line];
+            while (run < runs.size() && runs[run].x1 <= s) ++run;
+            const bool filled = run < runs.size() && runs[run].x0 <= s;
+            const int i = y_across ? y : z, k = y_across ? z : y;
+            out.material[static_cast<std::size_t>(i + out.across * k)] = filled ? runs[run].material : -1;
         }
     }
-    return out;
+}
+
+void cut_across_x(int s, const Cutter& cutter, Cut& out) {
+    std::fill(out.material.begin(), out.material.end(), -1);
+    const BeamPlace& place = cutter.place;
+    const int others = cutter.voxels.size[static_cast<std::size_t>(3 - place.axis)];  // y and z add up to 3
+    for (int other = 0; other < others; ++other) {
+        const std::size_t line = place.axis == 1 ? line_of(cutter.voxels, s, other) : line_of(cutter.voxels, other, s);
+        for (const Run& run : cutter.voxels.lines[line]) {
+            for (int x = run.x0; x < run.x1; ++x) {
+                const int i = place.bends == 0 ? other : x, k = place.bends == 0 ? x : other;
+                out.material[static_cast<std::size_t>(i + out.across * k)] = run.material;
+            }
+        }
+    }
+}
+
+void cut_at(int s, Cutter& cutter, Cut& out) {
+    if (cutter.place.axis == 0)
+        cut_along_x(s, cutter, out);
+    else
+        cut_across_x(s, cutter, out);
 }
 
 // Whether all filled voxels hang together by their sides.
@@ -69,6 +99,7 @@ struct Moments {
     double middle = 0.0;    // across, voxels
     double turned = 0.0;    // Iyz / sqrt(Iyy Izz)
     int low = 0, high = 0;  // across, of what is filled
+    double poisson = 0.0;   // the largest
 };
 
 Moments moments_of(const Cut& slice, const std::vector<Material>& materials) {
@@ -88,6 +119,7 @@ Moments moments_of(const Cut& slice, const std::vector<Material>& materials) {
             sum_ik += E * i * k;
             out.low = std::min(out.low, i);
             out.high = std::max(out.high, i + 1);
+            out.poisson = std::max(out.poisson, materials[static_cast<std::size_t>(material)].poisson);
         }
     }
     if (!(out.weight > 0.0)) return out;
@@ -104,8 +136,9 @@ struct Sections {
     int count = 0, split = 0, turned = 0;
     double split_at_m = 0.0;
     double most_turned = 0.0;
-    double middle = 0.0;  // across, of all; voxels
-    double width = 0.0;   // mean; voxels
+    double middle = 0.0;   // across, of all; voxels
+    double width = 0.0;    // mean; voxels
+    double poisson = 0.0;  // the largest
 };
 
 Sections sections_of(const Part& part, const BeamPlace& place) {
@@ -115,28 +148,35 @@ Sections sections_of(const Part& part, const BeamPlace& place) {
     const int slices = part.voxels.size[static_cast<std::size_t>(place.axis)];
     const int first = std::clamp(static_cast<int>(std::floor((place.low_m - origin_m) / h + 0.5)), 0, slices);
     const int end = std::clamp(static_cast<int>(std::floor((place.high_m - origin_m) / h + 0.5)), first, slices);
+    Cutter cutter{part.voxels, place, {}};
+    if (place.axis == 0) cutter.cursor.assign(part.voxels.lines.size(), 0);
+    const auto third = static_cast<std::size_t>(3 - place.axis - place.bends);
+    Cut cut{part.voxels.size[third], part.voxels.size[static_cast<std::size_t>(place.bends)], {}};
+    cut.material.resize(static_cast<std::size_t>(cut.across) * static_cast<std::size_t>(cut.along));
     Sections out;
+    Cut before;
+    Moments m;
+    bool whole = true;
     for (int s = first; s < end; ++s) {
-        const Cut slice = slice_of(part.voxels, place, s);
-        const Moments m = moments_of(slice, materials);
+        cut_at(s, cutter, cut);
+        if (cut.material != before.material) {  // most slices are as the one before
+            m = moments_of(cut, materials);
+            whole = in_one_piece(cut);
+            before = cut;
+        }
         if (!(m.weight > 0.0)) continue;
         ++out.count;
         out.middle += m.middle;
         out.width += m.high - m.low;
         out.most_turned = std::max(out.most_turned, m.turned);
+        out.poisson = std::max(out.poisson, m.poisson);
         if (m.turned > kMostTurned) ++out.turned;
-        if (in_one_piece(slice)) continue;
+        if (whole) continue;
         if (out.split++ == 0) out.split_at_m = origin_m + (s + 0.5) * h;
     }
     out.middle /= std::max(1, out.count);
     out.width /= std::max(1, out.count);
     return out;
-}
-
-double largest_poisson(const Part& part) {
-    double most = 0.0;
-    for (const Material& material : elastic_of(part)) most = std::max(most, material.poisson);
-    return most;
 }
 
 }  // namespace
@@ -155,10 +195,9 @@ std::string section_doubt(const Part& part, const PartLoad& load, const BeamPlac
     const double beside_m = std::abs(load.at_m[third] - part.voxels.frame.origin_m[third] - h * sections.middle);
     if (!load.face && beside_m > 0.5 * h * sections.width)
         return "the load is " + mm(beside_m) + " beside the axis and twists it";
-    const double poisson = largest_poisson(part);
-    if (h * sections.width > kPlate * length_m && poisson > 0.2)
+    if (h * sections.width > kPlate * length_m && sections.poisson > 0.2)
         return "it is " + mm(h * sections.width) + " wide and " + mm(length_m) + " long: a plate, up to " +
-               files::short_number(100.0 / (1.0 - poisson * poisson) - 100.0) + " % stiffer";
+               files::short_number(100.0 / (1.0 - sections.poisson * sections.poisson) - 100.0) + " % stiffer";
     return "";
 }
 

@@ -126,6 +126,9 @@ void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     out.answered = true;
     out.displacement_m = tip_m(beam, load, out.method);
     out.stiffness_N_per_m = load.force_N / out.displacement_m;
+    const double strain = greatest_bending_strain(beam, beam.across * load.force_N);
+    if (linear_range(strain) == LinearRange::red)
+        out.why_not = "strains reach up to " + files::short_number(100.0 * strain) + " %, which is not small";
     const double bent_m = tip_m(beam, load, Method::euler_bernoulli);
     const double shear = tip_m(beam, load, Method::timoshenko) / bent_m - 1.0;
     if (out.method != Method::timoshenko && shear > kMostShear)
@@ -136,9 +139,6 @@ void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     if (!beam.doubt.empty()) out.why_not = beam.doubt;
     if (beam.length_m < kLeastSlenderness * beam.height_m)
         out.why_not = "length over height is " + files::short_number(beam.length_m / beam.height_m) + ", below 5";
-    const double strain = greatest_bending_strain(beam, beam.across * load.force_N);
-    if (linear_range(strain) == LinearRange::red)
-        out.why_not = "strains reach up to " + files::short_number(100.0 * strain) + " %, which is not small";
     const double excess = bent_m / tip_m(beam, load, Method::elastica) - 1.0;
     if (out.method != Method::elastica && excess > kMostBend)
         out.why_not = "the beam bends too far: without large angles it goes " + files::short_number(100.0 * excess) +

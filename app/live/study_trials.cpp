@@ -116,8 +116,7 @@ void check_letters(const study::Protocol& protocol) {
     for (const ShownText& shown : shown_texts(protocol)) {
         const std::string letter = first_letter_not_shown(shown.text);
         if (letter.empty()) continue;
-        throw files::bad_input(file, shown.key, files::shown(letter),
-                               std::string("letters of the font: ") + letters_shown());
+        throw files::bad_input(file, shown.key, files::shown(letter), letters_shown());
     }
 }
 

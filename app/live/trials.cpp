@@ -228,7 +228,7 @@ void draw_turn(scene::Scene& scene) {
 
 void turn_tissue(platform::Window& window, App& app) {
     // parts hide nothing, and stand beside plots that want their places
-    if (std::holds_alternative<scene::PartOptions>(app.session.scene.tissue)) return;
+    if (scene::parts_of(app.session.plan->tissue) != nullptr) return;
     scene::Scene turned = app.session.scene;
     scene::Mapping& mapping = turned.mapping;
     const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);

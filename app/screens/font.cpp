@@ -62,6 +62,6 @@ std::string first_letter_not_shown(const std::string& text) {
     return {};
 }
 
-const char* letters_shown() { return "Latin, Greek, Cyrillic"; }
+const char* letters_shown() { return "letters of the font: Latin, Greek, Cyrillic"; }
 
 }  // namespace palpa::app

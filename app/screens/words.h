@@ -680,11 +680,12 @@ inline constexpr const char* pageCannotStore =
     "This browser cannot store trials ({}). Export each trial when it is finished.";
 inline constexpr const char* pageTakesNoLogs = "This desk does not accept logs (it was started without --collect).";
 inline constexpr const char* pageNotStored =
-    "Trial {} is not stored: {}. Menu, Trials, Export saves it to a file; the next trial waits for that.";
+    "Trial {} is not stored: {}. Export, on the page of trials, saves it to a file; the next trial waits for that.";
 inline constexpr const char* pageCannotRead =
     "The trials that were stored before cannot be read ({}); the exported file does not contain them.";
 inline constexpr const char* pageOddParticipant =
-    "The page's address names the participant '{}', expected 1 to 64 letters and digits. Trials are stored under {}.";
+    "The page's address names the participant '{}', expected 1 to 64 letters and digits, and none of NA, nan, null, "
+    "None. Trials are stored under {}.";
 inline constexpr const char* pageStorageFull = "the storage of this browser is full";
 inline constexpr const char* pagePartNotStored =
     "The trial in progress is not stored ({}); this is tried again at its end.";
@@ -713,7 +714,7 @@ inline constexpr const char* pageStored = "{} trial(s) stored on this tablet.";
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
 inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";
 inline constexpr const char* pageSettingsNotStored = "Settings are not stored: the storage of this browser is full.";
-inline constexpr const char* pageUnsaved = "{} trial(s) NOT stored: Menu, Trials, Export.";
+inline constexpr const char* pageUnsaved = "{} trial(s) NOT stored: use Export.";
 inline constexpr const char* pageDesignNotStored =
     "The changed part is not stored: {}. Save it to a file before you leave this page.";
 inline constexpr const char* pageCanvas = "Tissue to press on, and its controls";

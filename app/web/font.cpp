@@ -16,6 +16,6 @@ std::string first_letter_not_shown(const std::string& text) {
     return {};
 }
 
-const char* letters_shown() { return "Latin letters of Western Europe"; }
+const char* letters_shown() { return "letters of the font: Latin letters of Western Europe"; }
 
 }  // namespace palpa::app

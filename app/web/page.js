@@ -104,7 +104,7 @@ const palpaPage = (() => {
 
     at('pair').addEventListener('submit', async (event) => {
         event.preventDefault();
-        await palpaTrials.pair(at('code').value.trim());
+        await palpaTrials.pair(at('code').value.replace(/\s/g, ''));
         at('code').value = '';
         show();
     });

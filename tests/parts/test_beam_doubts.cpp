@@ -46,6 +46,20 @@ TEST_CASE("beam doubts: a slit along the bar makes two bars that bend one by one
     Json json = bar(40, 4, 4);
     json["shape"].push_back({{"remove", {{"box", box(4, 0, 1.5, 36, 4, 2.5)}}}});
     CHECK(contains(doubt(json), "in pieces that do not touch, from 4.25 mm"));
+    for (const char* direction : {"-x", "-y"}) {  // along z
+        CAPTURE(direction);
+        const bool along_x = direction[1] == 'x';
+        Json upright = bar(4, 4, 40);
+        upright["axis"] = "z";
+        upright["supports"] = {{{"face", "zmin"}, {"fix", "xyz"}}};
+        upright["loads"] = {{"tip", {{"face", "zmax"}, {"direction", direction}}}};
+        CHECK(doubt(upright).empty());
+        upright["shape"].push_back(
+            {{"remove", {{"box", along_x ? box(1.5, 0, 4, 2.5, 4, 36) : box(0, 1.5, 4, 4, 2.5, 36)}}}});
+        CHECK(contains(doubt(upright), "in pieces that do not touch, from 4.25 mm"));
+        upright["shape"].back() = {{"remove", {{"box", box(1, 1, 0, 4, 4, 40)}}}};
+        CHECK(contains(doubt(upright), "turned against the plane of the load"));
+    }
 }
 
 TEST_CASE("beam doubts: an angle section gives way sideways too") {

@@ -131,7 +131,7 @@ test('the browser closes its storage: what is palpated afterwards can be exporte
 }));
 
 test('an address whose participant is no code is told; one with an empty protocol asks for no study', () => withPage({quiet: true}, async ({page}, desk) => {
-    for (const [query, odd] of [['?participant=Ann%20Lee', 'Ann Lee'], ['?protocol=&participant=', ''], ['?protocol=', null]]) {
+    for (const [query, odd] of [['?participant=Ann%20Lee', 'Ann Lee'], ['?participant=NA', 'NA'], ['?protocol=&participant=', ''], ['?protocol=', null]]) {
         await page.goto(desk.url + query);
         await soon(page);
         await frames(page, 3);
