@@ -73,9 +73,9 @@ test('parts: an edit outlives a reload, is gone on with, and is saved as a file'
     await started(page);
     assert.deepEqual(await edits(page), ['toothbrush-a-edited.json']);
     await parts(page);
-    await tap(browser, 184, 518); // Earlier changes
+    await tap(browser, 184, 586); // Earlier changes
     await frames(page, 30);
-    const [download] = await Promise.all([page.waitForEvent('download', {timeout: 60000}), tap(browser, 184, 518)]); // Save a to a file
+    const [download] = await Promise.all([page.waitForEvent('download', {timeout: 60000}), tap(browser, 184, 586)]); // Save a to a file
     assert.equal(download.suggestedFilename(), 'toothbrush-a-edited.json');
     const saved = JSON.parse(await readFile(await download.path(), 'utf8'));
     assert.ok('remove' in saved.shape.at(-1), JSON.stringify(saved.shape.at(-1)));
