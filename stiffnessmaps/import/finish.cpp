@@ -184,6 +184,18 @@ std::vector<float> filled_forces(const Map& map) {
     return out;
 }
 
+namespace {
+
+void note_worst(double off_N, const RecordedPoints& recorded, std::size_t i, ImportResidual& out) {
+    if (off_N <= out.worst_N) return;
+    out.worst_N = off_N;
+    out.worst_x_m = recorded.x_m[i];
+    out.worst_y_m = recorded.y_m[i];
+    out.worst_depth_m = static_cast<double>(recorded.depth_m[i]);
+}
+
+}  // namespace
+
 ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
     const Field field = make_field(map, {});
     ImportResidual out;
@@ -197,11 +209,7 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
         if (!place.inside || !place.measured || depth_m > greatest_depth_m(field, place) + kHair_m) continue;
         const double off_N = std::abs(normal_force_N(field, place, depth_m) - static_cast<double>(recorded.force_N[i]));
         residuals.push_back(off_N);
-        if (off_N <= out.worst_N) continue;
-        out.worst_N = off_N;
-        out.worst_x_m = recorded.x_m[i];
-        out.worst_y_m = recorded.y_m[i];
-        out.worst_depth_m = depth_m;
+        note_worst(off_N, recorded, i, out);
     }
     out.n = residuals.size();
     out.median_N = median(std::move(residuals));
@@ -255,11 +263,7 @@ std::optional<ImportResidual> tangential_residual_of(const Map& map, const Recor
                                           static_cast<double>(recorded.tangential_N[along][i]));
             if (!place.inside || std::isnan(off_N)) continue;
             residuals.push_back(off_N);
-            if (off_N <= out.worst_N) continue;
-            out.worst_N = off_N;
-            out.worst_x_m = recorded.x_m[i];
-            out.worst_y_m = recorded.y_m[i];
-            out.worst_depth_m = depth_m;
+            note_worst(off_N, recorded, i, out);
         }
     }
     if (residuals.empty()) return std::nullopt;
