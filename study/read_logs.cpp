@@ -239,6 +239,10 @@ class Subject {
         } else if (excluded) {
             ++out_.excluded_trials;
         } else {
+            // older logs hold such trials; now they are interrupted and repeated
+            if (run.max_force_N == 0.0 && run.tp + run.fp == 0)
+                out_.notes.push_back(run.events.string() +
+                                     ": was finished without a touch; its nodules count as missed");
             study_.found.add(run, index_, settings, marks.value_or(std::vector<LoggedMark>{}));
         }
     }

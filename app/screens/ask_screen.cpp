@@ -64,11 +64,11 @@ void draw_ask(const Shown& shown, Gui& gui, Wishes& wishes) {
     paragraph(question.what);
     const bool stay = big_button(question.stay, words::kEscape, {0.0f, kMark_mm, true, false}, gui) ||
                       gui.pressed(platform::key::escape);
+    ImGui::SetItemDefaultFocus();         // a second Enter on the button that asked throws nothing away
     const bool ring = gui.shows_focus();  // then Enter presses the button that has it
     const bool by_key = gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
     const bool end =
         big_button(question.end, ring ? "" : words::kEnter, {0.0f, kTarget_mm, true, false}, gui) || by_key;
-    ImGui::SetItemDefaultFocus();
     end_panel("ask", gui);
     if (end && !stay) wishes = *shown.asked;
     wishes.sure = end && !stay;

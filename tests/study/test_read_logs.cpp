@@ -255,6 +255,38 @@ TEST_CASE("read logs: conditions and blocks that the protocol does not know are 
     });
 }
 
+TEST_CASE("read logs: a trial that was finished without a touch is named") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = protocol_in(folder / "p.json", "");
+    open_study(log, protocol, {});
+    add_people(log, {Person{"01", "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+    for (const PlannedTrial& trial : plan_participant(protocol, 1).trials) {
+        const RunFiles files = next_run(log, "01");
+        write_text_atomically(files.file("_settings.json"),
+                              R"({"nodules": [{"id": "A"}], "study": {"sha256": ")" + protocol.sha256 + "\"}}");
+        TrialLog out(files, {false, false});
+        EventRow row;
+        row.trial = trial.trial;
+        row.trial_type = "start";
+        row.block = "test";
+        row.condition = protocol.conditions[trial.condition].id;
+        row.seed = trial.seed;
+        row.n_nodules = 1;
+        out.write(row);
+        row.trial_type = "finish";
+        row.onset_s = row.duration_s = 20.0;
+        row.true_positives = row.false_positives = 0.0;
+        row.false_negatives = 1.0;
+        row.path_mm = row.mean_force_N = 0.0;
+        row.max_force_N = trial.trial == 1 ? 0.0 : 0.7;
+        out.write(row);
+    }
+    const std::vector<std::string> notes = read_study(log).notes;
+    REQUIRE(notes.size() == 1);
+    CHECK(contains(notes.front(), "run-01_events.tsv: was finished without a touch; its nodules count as missed"));
+}
+
 TEST_CASE("read logs: another protocol's trials are refused, also without study.json, and those of no protocol") {
     const std::string settings = std::string(kStem01) + "_settings.json";
     REFUSED(find_study, "two versions of a protocol", fs::remove(log / "study.json");
