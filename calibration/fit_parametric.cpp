@@ -304,7 +304,18 @@ bool reweighted(const FitPoints& points, const FitOptions& options, FitWorkspace
     return true;
 }
 
-std::optional<Curve> curve_of(const FitOptions& options, const Eigen::Vector3d& p) {
+// Straight points would give an exponential with offset parameters without bound, A = -c. The curve that has the same
+// values at both ends and is bent by the least that is sensible stays within 2e-4 of its rise.
+Eigen::Vector3d bent_enough(const FitOptions& options, const Eigen::Vector3d& p) {
+    constexpr double kLeastBend = 1e-3;
+    if (!has_offset(options) || std::abs(p(1)) >= kLeastBend) return p;
+    const double theta = std::copysign(kLeastBend, p(1));
+    const double A = p(0) * std::expm1(-p(1)) / std::expm1(-theta);
+    return {A, theta, p(0) + p(2) - A};
+}
+
+std::optional<Curve> curve_of(const FitOptions& options, const Eigen::Vector3d& found) {
+    const Eigen::Vector3d p = bent_enough(options, found);
     const double A = log_line(options) ? std::exp(p(0)) : p(0);
     Curve curve;
     curve.model = options.model;

@@ -109,10 +109,7 @@ void check_values(const files::JsonReader& json, const Profile& profile) {
     }
 }
 
-}  // namespace
-
-Profile read_profile(const std::filesystem::path& path) {
-    const files::Json root = files::read_json(path);
+Profile parse_profile(const files::Json& root, const std::filesystem::path& path) {
     files::JsonReader json(root, path.string());
     json.only({"device", "model", "parameters", "level", "level_range", "fitted_range", "full_contact_area_px2",
                "quality", "points"});
@@ -139,6 +136,10 @@ Profile read_profile(const std::filesystem::path& path) {
     check_values(json, profile);
     return profile;
 }
+
+}  // namespace
+
+Profile read_profile(const std::filesystem::path& path) { return parse_profile(files::read_json(path), path); }
 
 files::Json parameters_json(const Curve& curve) {
     switch (curve.model) {
@@ -181,7 +182,9 @@ files::Json profile_json(const Profile& profile, const files::Json& quality) {
 }
 
 void write_profile(const Profile& profile, const files::Json& quality, const std::filesystem::path& path) {
-    files::write_text_atomically(path, files::json_text(profile_json(profile, quality)));
+    const files::Json json = profile_json(profile, quality);
+    parse_profile(json, path);  // what no reader takes is not written
+    files::write_text_atomically(path, files::json_text(json));
 }
 
 }  // namespace palpa::calibration

@@ -15,7 +15,7 @@ Profile read_profile(const std::filesystem::path& path);
 files::Json parameters_json(const Curve& curve);
 
 // Returns the content of the file; `quality` is kept for people and for `palpa explain`. write_profile() writes it
-// whole or not at all, and throws std::runtime_error if it cannot.
+// whole or not at all, and throws InputError if read_profile() would refuse it, std::runtime_error if it cannot.
 files::Json profile_json(const Profile& profile, const files::Json& quality);
 void write_profile(const Profile& profile, const files::Json& quality, const std::filesystem::path& path);
 

@@ -101,6 +101,24 @@ TEST_CASE("fit: power and exponential with offset come back from exact points, b
     }
 }
 
+TEST_CASE("fit: straight points give an exponential with offset of parameters that a profile may have") {
+    FitPoints points;
+    points.level = Eigen::ArrayXd::LinSpaced(12, 0.05, 0.95);
+    for (const double rounding_N : {0.0, 1e-9, 1e-4}) {
+        CAPTURE(rounding_N);
+        points.force_N = 0.02 + 6.0 * points.level;
+        for (Eigen::Index i = 0; i < 12; ++i) points.force_N(i) += (i % 3 == 0 ? -1.0 : 0.5) * rounding_N;
+        for (const ErrorModel error : {ErrorModel::newton, ErrorModel::log}) {
+            const auto curve = fit_curve(points, options_of(CurveModel::exponential_offset, error, Robust::huber, 1.0));
+            REQUIRE(curve);
+            CHECK(std::abs(curve->a_N) < 1e4);
+            CHECK(std::abs(curve->offset_N) < 1e4);
+            for (const double x : {0.05, 0.5, 0.95})
+                CHECK(std::abs(value_N(*curve, x) - (0.02 + 6.0 * x)) < 2e-4 * 6.0 + rounding_N);
+        }
+    }
+}
+
 TEST_CASE("hard case 2: bias at full scale below 3 % over 500 trials with the error model that fits the noise") {
     constexpr unsigned seed = 20261121;
     CAPTURE(seed);

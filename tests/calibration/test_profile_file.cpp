@@ -84,6 +84,15 @@ TEST_CASE("profile file: every model is written and read back to the last bit") 
     }
 }
 
+TEST_CASE("profile file: what no reader would take is not written") {
+    const TemporaryFolder folder;
+    Profile profile;
+    profile.curve = {CurveModel::exponential_offset, 4.8e7, 1e-7, -4.8e7, {}, {}, {}};
+    const std::string refusal = message_of([&] { write_profile(profile, Json::object(), folder / "p.json"); });
+    CHECK(contains(refusal, "p.json: parameters.a_N: found 48000000"));
+    CHECK_FALSE(std::filesystem::exists(folder / "p.json"));
+}
+
 TEST_CASE("profile file: parameters of every model are checked by key") {
     CHECK(contains(refusal_of_profile(of_model("power", R"({"a_N": 2, "b": -1})")), "parameters.b: found -1"));
     CHECK(contains(refusal_of_profile(of_model("power", R"({"a_N": 2})")), "parameters.b: found nothing"));
