@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "files/text.h"
 #include "mechanics/error.h"
@@ -104,6 +105,42 @@ PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<dou
     if (!load_place_m && out.doubt.empty())
         out.doubt = section_doubt(part, load, {*part.axis, bends, span.low_m, span.high_m});
     return out;
+}
+
+std::string axial_doubt(const Part& part, const PartLoad& load) {
+    if (!part.axis) return "";
+    const auto axis = static_cast<std::size_t>(*part.axis);
+    const double along = load.direction[axis];
+    const double across = std::sqrt(std::max(0.0, 1.0 - along * along));
+    bool clamped_low = true;
+    double buckling_N = std::numeric_limits<double>::infinity();
+    for (const std::size_t bends : {(axis + 1) % 3, (axis + 2) % 3}) {
+        PartLoad sideways = load;
+        sideways.direction = {};
+        sideways.direction[bends] = 1.0;
+        const BeamSpan span = beam_span(part, sideways, {});
+        if (!span.why_not.empty()) return "";
+        clamped_low = span.clamped_low;
+        std::vector<BeamPiece> pieces;
+        try {
+            pieces = beam_pieces(part.voxels, elastic_of(part), *part.axis, static_cast<int>(bends), span.low_m,
+                                 span.high_m);
+        } catch (const MeshError&) {
+            return "";
+        }
+        // Euler's load of a clamped column, pi^2 D / (4 L^2), by its stiffness at the tip, 3 D / L^3
+        const double stiffness_N_per_m = 1.0 / beam_tip(pieces, clamped_low, false).m_per_N;
+        constexpr double kEuler = 3.14159265358979323846 * 3.14159265358979323846 / 12.0;
+        buckling_N = std::min(buckling_N, kEuler * stiffness_N_per_m * (span.high_m - span.low_m));
+    }
+    const bool presses = (along > 0.0) != clamped_low;
+    const double share = std::abs(along) * load.force_N / buckling_N;
+    const std::string at = "the force along the axis is " + files::short_number(100.0 * share) + " % of the " +
+                           files::short_number(buckling_N) + " N at which the part buckles";
+    if (presses && share > kMostColumn) return at;
+    if (across < kStraight || share <= kMostAxial) return "";
+    return at + (presses ? ", and bends it further" : ", and pulls it straight") +
+           ", which small displacements leave out";
 }
 
 double paper_spring_N_per_m(const PartBeam& beam) {

@@ -29,6 +29,15 @@ inline constexpr double kMostOblique = 0.1;
 inline constexpr double kMostSpread = 0.4;
 PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m = {});
 
+// What the load's part along the axis says against small displacements, "" for nothing or for a part that is no beam: pressed
+// by a share k of its buckling load, a beam bends 1 / (1 - k) times as far sideways, pulled 1 / (1 + k) times (Timoshenko, Gere,
+// Theory of Elastic Stability, sections 1.11 and 1.12). Doubts k above kMostAxial if the load has another part than that along
+// the axis, and k above kMostColumn if it presses straight.
+inline constexpr double kMostAxial = 0.05;
+inline constexpr double kMostColumn = 0.5;
+inline constexpr double kStraight = 1e-3;  // sine of the angle between the load and the axis
+std::string axial_doubt(const Part& part, const PartLoad& load);
+
 // Stiffness of the torsion spring by which the paper replaces a beam of pieces, force over displacement at the tip, as
 // the paper uses it (N/m):
 //   k_i = 2 D_i / l_i^2,   gamma_i = F L / k_i,   theta = sum_i ( l_i sum_{j<=i} gamma_j ) / L,   k = F / theta

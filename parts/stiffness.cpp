@@ -193,6 +193,7 @@ std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, c
     std::vector<MethodResult> out;
     std::optional<CellModel> model;
     Eigen::Matrix3Xd load_N;
+    const std::string axial = axial_doubt(part, load);
     for (const Method method : options.methods) {
         MethodResult result;
         result.method = method;
@@ -213,6 +214,7 @@ std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, c
         } catch (const LoadError& error) {
             throw files::InputError(part.file + ": loads." + load.name + ": " + error.what());
         }
+        if (result.answered && result.why_not.empty()) result.why_not = axial;
         result.time_s = files::steady_s() - began_s;
         out.push_back(result);
     }

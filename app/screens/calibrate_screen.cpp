@@ -144,7 +144,7 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
     // Enter takes it, the same number again too: while the pen is held down, the display gives a click of the mouse to nobody,
-    // so that the field takes the keys then, and the button waits
+    // so that the field takes the keys then, and a button would be of no use
     const bool presses = recording.session.touching;
     if (presses && !guide.pressed && guide.note == words::kRecorded) guide.note.clear();  // of the press before
     guide.pressed = presses;
@@ -160,9 +160,8 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     number_field(words::kGramForce, guide.shown_gf, "%.2f");
     ImGui::PopStyleVar();
     guide.typing = ImGui::IsItemActive();
-    const bool entered = is_deactivated_by_enter();
-    if (!big_button(words::kRecord, words::kEnter, {0.0f, kTarget_mm, !presses}, gui) && !entered) return;
-    guide.again = entered;  // the next number is typed at once
+    if (!is_deactivated_by_enter()) return;
+    guide.again = true;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
     guide.note = !good                                                                           ? words::kNotAForce
                  : calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording) ? words::kRecorded

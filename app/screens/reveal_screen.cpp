@@ -38,39 +38,6 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
     }
 }
 
-struct Label {
-    ImVec2 at;
-    std::string text;
-};
-
-bool overlap(const PanelArea& a, const PanelArea& b) {
-    return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
-}
-
-// Draws each label beside its mark, at the first of eight places where it covers no other and stays in the window.
-void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) {
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    std::vector<PanelArea> taken;
-    for (const Label& label : labels)
-        taken.push_back({label.at.x - mm, label.at.y - mm, label.at.x + mm, label.at.y + mm});
-    for (const Label& label : labels) {
-        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-        const float off_px = 2.4f * mm;
-        PanelArea area{};
-        for (int k = 0; k < 8; ++k) {
-            const float x0 = k % 2 == 0 ? label.at.x + off_px : label.at.x - off_px - size.x;
-            const float step = static_cast<float>(k / 2) * 0.9f * size.y;
-            const float y0 = label.at.y - 1.2f * size.y + (k / 2 % 2 == 0 ? step : -step);
-            area = {x0, y0, x0 + size.x, y0 + size.y};
-            const bool free =
-                std::none_of(taken.begin(), taken.end(), [&](const PanelArea& other) { return overlap(area, other); });
-            if (free && area.x0 >= 0.0f && area.x1 <= screen.x && area.y0 >= 0.0f) break;
-        }
-        taken.push_back(area);
-        plated_text(draw, ImVec2(area.x0, area.y0), kInk, label.text);
-    }
-}
-
 void draw_marks(const Shown& shown, const session::Debrief& debrief, float mm, ImDrawList& draw) {
     std::vector<Label> labels;
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {

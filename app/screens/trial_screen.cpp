@@ -294,15 +294,16 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
             plated_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id);
         }
     }
+    std::vector<Label> labels;
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
         const session::Mark& mark = shown.trial.marks[i];
         const ImVec2 at = on_surface(shown.picture, mark.p_m.x(), mark.p_m.y());
         cross(draw, at, 1.6f * gui.mm(), kDark, 1.7f * gui.mm());
         cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
-        plated_text(draw, ImVec2(at.x + 3.0f * gui.mm(), at.y - 2.0f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,
-                    std::to_string(i + 1) + sure);
+        labels.push_back({at, std::to_string(i + 1) + sure});
     }
+    place_labels(labels, gui.mm(), draw);
     draw_pen(shown, gui, draw);
     draw_side_view(shown, gui);
     draw_pins_inset(shown, gui);

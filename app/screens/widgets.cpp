@@ -57,6 +57,10 @@ int push_colours(const ButtonLook& look) {
     return 4;
 }
 
+bool overlap(const PanelArea& a, const PanelArea& b) {
+    return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
 }  // namespace
 
 bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui) {
@@ -257,6 +261,29 @@ void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& t
                        ImVec2(at.x + size.x + margin_px, at.y + size.y + 0.4f * margin_px), IM_COL32(20, 22, 24, 205),
                        margin_px);
     draw.AddText(nullptr, 0.0f, at, colour, text.c_str(), nullptr, std::max(wrap_px, 0.0f));
+}
+
+void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    std::vector<PanelArea> taken;
+    for (const Label& label : labels)
+        taken.push_back({label.at.x - mm, label.at.y - mm, label.at.x + mm, label.at.y + mm});
+    for (const Label& label : labels) {
+        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+        const float off_px = 2.4f * mm;
+        PanelArea area{};
+        for (int k = 0; k < 8; ++k) {
+            const float x0 = k % 2 == 0 ? label.at.x + off_px : label.at.x - off_px - size.x;
+            const float step = static_cast<float>(k / 2) * 0.9f * size.y;
+            const float y0 = label.at.y - 1.2f * size.y + (k / 2 % 2 == 0 ? step : -step);
+            area = {x0, y0, x0 + size.x, y0 + size.y};
+            const bool free =
+                std::none_of(taken.begin(), taken.end(), [&](const PanelArea& other) { return overlap(area, other); });
+            if (free && area.x0 >= 0.0f && area.x1 <= screen.x && area.y0 >= 0.0f) break;
+        }
+        taken.push_back(area);
+        plated_text(draw, ImVec2(area.x0, area.y0), kInk, label.text);
+    }
 }
 
 void draw_too_small() {

@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 #include <string>
+#include <vector>
 
 #include "app/screens/gui.h"
 #include "render/tissue.h"
@@ -92,6 +93,12 @@ void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float wid
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 // Draws text on a dark plate, so that it can be read on any tissue; in lines of wrap_px at most if that is > 0.
 void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px = -1.0f);
+struct Label {
+    ImVec2 at;  // of its mark
+    std::string text;
+};
+// Draws each label beside its mark, at the first of eight places where it covers no other and stays in the window.
+void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw);
 // Says that the window has no room for controls.
 void draw_too_small();
 

@@ -454,7 +454,6 @@ inline constexpr const char* kForceAxis = "force (N)";
 inline constexpr const char* kPercentAxis = "%";
 inline constexpr const char* kMouseHasNone = "A mouse has no pressure sensor: press with the pen or a finger.";
 inline constexpr const char* kHoldStill = "Hold the pen still, type the reading of the scale, and press Enter.";
-inline constexpr const char* kRecord = "Record";
 inline constexpr const char* kRecorded = "Recorded.";
 inline constexpr const char* kDropPoint = "Drop the last point";
 inline constexpr const char* kNotAForce = "Not recorded: type what the scale shows, 0 to 99999 gram-force.";

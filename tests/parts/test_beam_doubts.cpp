@@ -103,3 +103,23 @@ TEST_CASE(
     part.loads[0].force_N = 1.0;
     CHECK(stiffness_of(part, part.loads[0], {{Method::voxels}, {}, 1e-4})[0].why_not.empty());
 }
+
+TEST_CASE(
+    "beam doubts: a column beyond its buckling load, and a bar that is bent and pressed or pulled along its axis") {
+    Json json = bar(100, 4, 4);
+    json["voxel_mm"] = 1.0;
+    json["cell_mm"] = 1.0;
+    const auto with = [&](const Json& direction, double force_N, Method method) {
+        json["loads"] = {{"tip", {{"face", "xmax"}, {"direction", direction}, {"force_N", force_N}}}};
+        return doubt(json, {method});
+    };
+    // Euler's load with the bar's 8.3 GPa: pi^2 E I / (4 L^2) = 43.69 N
+    CHECK(contains(with("-x", 2000.0, Method::voxels), "% of the 43.69 N at which the part buckles"));
+    CHECK(with("-x", 15.0, Method::voxels).empty());
+    CHECK(with("x", 40.0, Method::voxels).empty());
+    const Json oblique{-1.0, 0.0, -2.0}, pulled{1.0, 0.0, -2.0};
+    CHECK(contains(with(oblique, 10.0, Method::timoshenko), "and bends it further"));
+    CHECK(contains(with(pulled, 10.0, Method::timoshenko), "and pulls it straight"));
+    CHECK(with(oblique, 1.0, Method::timoshenko).empty());
+    CHECK(with("-z", 1.0, Method::timoshenko).empty());
+}
