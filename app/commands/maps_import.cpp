@@ -217,7 +217,7 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
     std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)", report.missing_cells,
                 report.rejected_rows, report.rows, report.rejected_points, report.outliers);
     if (report.form == stiffnessmaps::RecordingForm::probing)
-        std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
+        std::printf("; %.3g N at contact, or in the air before it, subtracted (median)", report.median_offset_N);
     std::printf("\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %s\n",
                 residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
                 100.0 * residual.worst_share(),
@@ -308,7 +308,8 @@ void add_table_options(CLI::App& command, ImportArguments& a) {
         ->group(kTableOptions);
     text("--contact", a.contact, "start of contact: first-row, threshold, or given (depths count from the surface)")
         ->check(one_of({"first-row", "threshold", "given"}));
-    number("--contact-force-N", a.contact_force_N, "threshold of the force at contact", 0.0, 100.0);
+    number("--contact-force-N", a.contact_force_N, "force, less that in the air, above which a place touches for sure",
+           0.0, 100.0);
     const auto sliding = [](CLI::Option* option) { option->group(kSlidingOptions); };
     sliding(
         command

@@ -51,7 +51,7 @@ struct ImportOptions {
 
     // probing
     std::optional<ContactStart> contact;
-    std::optional<double> contact_force_N;  // at which contact begins, with ContactStart::threshold
+    std::optional<double> contact_force_N;  // above which a place touches for sure, with ContactStart::threshold
 
     // sliding
     std::optional<double> surface_z_m;     // height of a flat surface, instead of an estimated one
@@ -97,7 +97,7 @@ struct ImportReport {
     std::size_t rejected_points = 0;  // with fewer than two depths left
     std::size_t outliers = 0;         // among the rejected rows
     std::size_t missing_cells = 0;    // of the grid
-    double median_offset_N = 0.0;     // force at contact, which is subtracted point by point
+    double median_offset_N = 0.0;     // force at contact, or in the air, subtracted point by point
     ImportResidual residual;
     std::optional<ImportResidual> tangential;  // |map - recording| of measured tangential forces of a sliding tool
     std::vector<std::string> notes;            // what a person should know, in plain words

@@ -388,7 +388,7 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     source.how = "point-wise probing; ";
     source.how += grid.on_grid ? "on the grid of its places"
                                : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
-    source.how += "; force at contact subtracted point by point (median " +
+    source.how += "; force at contact, or in the air before it, subtracted point by point (median " +
                   files::short_number(report.median_offset_N) + " N); linear between a point's own depths";
 
     RecordedPoints recorded;

@@ -9,6 +9,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/choices.h"
+#include "stiffnessmaps/import/contact_height.h"
 #include "stiffnessmaps/import/probing.h"
 #include "stiffnessmaps/import/robust.h"
 
@@ -55,55 +56,33 @@ double start_at_first_row(ProbedPoint& p) {
     return force_N;
 }
 
-// Counts depth from where the force crosses the threshold. Returns the force in the air. A place whose force never
-// crosses the threshold is emptied.
-double start_at_threshold(ProbedPoint& p, double threshold_N) {
-    const std::size_t in_air = std::min<std::size_t>(3, p.force_N.size());
-    const double offset_N = median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
-    for (double& f : p.force_N) f -= offset_N;
-    std::size_t first = 0;
-    while (first < p.force_N.size() && p.force_N[first] < threshold_N) ++first;
-    if (first == 0 || first == p.force_N.size()) {
-        if (first != 0) {
-            p.depth_m.clear();
-            p.force_N.clear();
-        }
-        if (!p.depth_m.empty()) start_at_first_row(p);
-        return offset_N;
-    }
-    const double s = (threshold_N - p.force_N[first - 1]) / (p.force_N[first] - p.force_N[first - 1]);
-    const double contact_m = p.depth_m[first - 1] + s * (p.depth_m[first] - p.depth_m[first - 1]);
-    p.z_m = -contact_m;
-    // the last row in the air becomes the contact
-    p.depth_m[first - 1] = contact_m;
-    p.force_N[first - 1] = 0.0;
-    for (std::size_t i = 1; i < first; ++i) erase_row(p, 0);
-    for (double& d : p.depth_m) d -= contact_m;
-    if (p.depth_m.size() > 1 && !(p.depth_m[1] > 0.0)) erase_row(p, 1);
-    return offset_N;
-}
-
-// Takes depth and force as they stand, with the contact, 0 N at depth 0, before the first row. Returns 0.
-double start_at_surface(ProbedPoint& p) {
+// Takes depth and force as they stand, with the contact, 0 N at depth 0, before the first row below it.
+void start_at_surface(ProbedPoint& p) {
     while (!p.depth_m.empty() && !(p.depth_m.front() > 0.0)) erase_row(p, 0);
     p.depth_m.insert(p.depth_m.begin(), 0.0);
     p.force_N.insert(p.force_N.begin(), 0.0);
     for (auto& lateral : p.lateral_N) {
         if (!lateral.empty()) lateral.insert(lateral.begin(), 0.0);
     }
-    return 0.0;
 }
 
-double start_of(ProbedPoint& p, ContactStart contact, double threshold_N) {
-    switch (contact) {
-        case ContactStart::first_row:
-            return start_at_first_row(p);
-        case ContactStart::threshold:
-            return start_at_threshold(p, threshold_N);
-        case ContactStart::given:
-            return start_at_surface(p);
+// Counts each place's depth from where its force begins, and its force from that in the air, which is returned. Places whose
+// force never begins are emptied.
+std::vector<double> start_at_contact(Probing& probing, const ContactHeights& contacts) {
+    for (std::size_t i = 0; i < probing.points.size(); ++i) {
+        ProbedPoint& p = probing.points[i];
+        const double contact_m = contacts.contact_m[i];
+        if (std::isnan(contact_m)) {
+            p.depth_m.clear();
+            p.force_N.clear();
+            continue;
+        }
+        for (double& d : p.depth_m) d -= contact_m;
+        for (double& f : p.force_N) f -= contacts.air_N[i];
+        start_at_surface(p);
+        p.z_m = -contact_m;
     }
-    return 0.0;
+    return contacts.air_N;
 }
 
 const char* name_of(ContactStart contact) {
@@ -174,24 +153,22 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
     const ContactStart contact =
         options.contact.value_or(probing.depth_from_z ? ContactStart::threshold : ContactStart::first_row);
     if (!options.contact && !probing.depth_from_z) check_first_rows(probing, file);
-    double threshold_N = options.contact_force_N.value_or(0.0);
-    if (contact == ContactStart::threshold && !options.contact_force_N) {
-        std::vector<double> steps_N;  // between the first two rows, which are in the air
-        std::vector<double> greatest_N;
-        for (const ProbedPoint& p : probing.points) {
-            steps_N.push_back(p.force_N[1] - p.force_N[0]);
-            greatest_N.push_back(p.force_N.back());
-        }
-        constexpr double kAboveNoise = 4.0;
-        constexpr double kLeastShare = 0.01;  // of the places' greatest force
-        threshold_N = std::max(kAboveNoise * robust_deviation(steps_N), kLeastShare * std::abs(median(greatest_N)));
-    }
-    std::vector<double> offsets_N;
     for (ProbedPoint& p : probing.points) {
         for (auto& lateral : p.lateral_N) {  // the lateral force counts from its first row, too
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
         }
-        offsets_N.push_back(start_of(p, contact, threshold_N));
+    }
+    std::vector<double> offsets_N;
+    double threshold_N = 0.0;
+    ContactHeights contacts;
+    if (contact == ContactStart::threshold) {
+        threshold_N = options.contact_force_N.value_or(contact_threshold_N(probing.points));
+        contacts = find_contacts(probing.points, threshold_N);
+        offsets_N = start_at_contact(probing, contacts);
+    }
+    for (ProbedPoint& p : probing.points) {
+        if (contact == ContactStart::first_row) offsets_N.push_back(start_at_first_row(p));
+        if (contact == ContactStart::given) start_at_surface(p);
     }
     report.median_offset_N = median(offsets_N);
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
@@ -201,8 +178,10 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
                "--contact", options.contact.has_value());
     if (contact == ContactStart::threshold) {
         add_choice(source, "contact_force_N", threshold_N,
-                   "4 deviations of the force in the air, or 1 % of the greatest", "--contact-force-N",
-                   options.contact_force_N.has_value());
+                   "4 deviations of the force in the air, or 1 % of the greatest: above it a place touches for sure",
+                   "--contact-force-N", options.contact_force_N.has_value());
+        add_choice(source, "contact_exponent", contacts.exponent,
+                   "of force over depth just above that force, for all places; by it the curve is led back to 0 N", "");
     }
     if (probing.depth_from_z && options.remove_tilt && !probing.points.empty()) remove_tilt(probing, source);
 }

@@ -12,8 +12,7 @@ struct ProbedPoint;
 //   outliers  leaves out a force that lies farther outside the range of its two neighbours than this many robust
 //             deviations of the recording's noise (robust.h): spikes go, slopes and kinks stay
 //   contact   first_row: the robot had found the surface; depth and force count from the first row.
-//             threshold: depth counts from where the force, less its median over the first three rows, crosses the
-//             threshold; rows before that are left out.
+//             threshold: depth counts from where the force begins, force from that in the air (contact_height.h).
 //             given: depths and forces count from the surface as they stand; rows that are not below it are left out.
 //             Depths that begin far below 0 are refused unless the options choose between first_row and given
 //   tilt      if depth comes from z: fits a plane through the contact heights (least squares) and takes depth and force

@@ -310,6 +310,45 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
     CHECK(choice_of(imported(text, keep), "tilt_removed_deg") == nullptr);
 }
 
+TEST_CASE("probing: the contact is where the force begins, not where it stands out from the noise") {
+    constexpr unsigned kSeed = 11;
+    CAPTURE(kSeed);
+    for (const double exponent : {1.0, 1.5, 2.0}) {
+        for (const double noise_N : {0.0, 0.01, 0.02}) {
+            CAPTURE(exponent);
+            CAPTURE(noise_N);
+            std::mt19937 random(kSeed);
+            std::normal_distribution<double> noise(0.0, 1.0);
+            std::string text = "x_mm,y_mm,z_mm,fz_N\n";
+            for (int p = 0; p < 64; ++p) {
+                for (int k = 0; k < 60; ++k) {
+                    const double depth_mm = 0.1 * k - 1.97;
+                    const double force_N =
+                        0.3 + 0.5 * std::pow(std::max(0.0, depth_mm), exponent) + noise_N * noise(random);
+                    text += std::to_string(3 * (p % 8)) + "," + std::to_string(3 * (p / 8)) + "," +
+                            number_text(-depth_mm) + "," + number_text(force_N) + "\n";
+                }
+            }
+            const Map map = imported(text);
+            CHECK(std::get<double>(choice_of(map, "contact_exponent")->value) == exponent);
+            const double threshold_N = std::get<double>(choice_of(map, "contact_force_N")->value);
+            const double least_N = 0.01 * 0.5 * std::pow(3.93, exponent);
+            CHECK(threshold_N == close_to(std::max(4.0 * noise_N, least_N)).epsilon(0.35));
+            const Field field = make_field(map, {});
+            for (const double depth_mm : {0.5, 1.0, 2.0, 3.5}) {
+                CAPTURE(depth_mm);
+                const double right_N = 0.5 * std::pow(depth_mm, exponent);
+                std::vector<double> off_N;
+                for (int p = 0; p < 64; ++p) {
+                    const auto place = place_at(field, {3e-3 * (p % 8), 3e-3 * (p / 8)});
+                    off_N.push_back(normal_force_N(field, place, 1e-3 * depth_mm) - right_N);
+                }
+                CHECK(std::abs(median(off_N)) < 2e-3 + 0.6 * noise_N + 0.01 * right_N);
+            }
+        }
+    }
+}
+
 TEST_CASE("probing: unequal depths that all points have are kept, so that an exported map comes back as it was") {
     std::string text = "x_mm,y_mm,depth_mm,fn_N\n";
     for (int p = 0; p < 9; ++p) {
