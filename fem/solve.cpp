@@ -167,7 +167,11 @@ void judge_linearity(const FemCase& model, const Loads& loads, FemResult& result
     if (result.contact) width_m = contact_width_m(model, result.contact->area_m2);
     const double depth_m = result.contact ? result.contact->depth_m : std::abs(result.centre_m.value_or(0.0));
     result.max_strain = max_principal_strain(result.fields);
-    result.linear_ratio = std::max(result.max_strain, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m));
+    result.max_rotation_rad = max_rotation_rad(model.problem.mesh, result.solution.u_m);
+    // the strain that a rotation brings and small displacements leave out; a bar that bends is about as far off
+    const double turned = 0.5 * result.max_rotation_rad * result.max_rotation_rad;
+    result.linear_ratio =
+        std::max({result.max_strain, turned, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m)});
     result.linear = linear_range(result.linear_ratio);
 }
 

@@ -37,8 +37,9 @@ struct FemResult {
     // Backward error below kMostBackwardError, and the contact settled; large strains: the whole load was reached.
     bool converged = false;
 
-    double max_strain = 0.0;    // largest magnitude of a principal strain
-    double linear_ratio = 0.0;  // mechanics/linear_range.h; 0 for large strains
+    double max_strain = 0.0;        // largest magnitude of a principal strain
+    double max_rotation_rad = 0.0;  // of a cell; 0 for large strains
+    double linear_ratio = 0.0;      // mechanics/linear_range.h; 0 for large strains
     mechanics::LinearRange linear = mechanics::LinearRange::fine;
 
     double assemble_s = 0.0;

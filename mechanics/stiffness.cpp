@@ -78,6 +78,23 @@ CellFields cell_fields(const Mesh& mesh, std::span<const Material> materials, co
     return fields;
 }
 
+double max_rotation_rad(const Mesh& mesh, const Eigen::Matrix3Xd& u_m) {
+    double largest = 0.0;
+    for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
+        Eigen::Matrix3d gradient;
+        if (is_hex(mesh)) {
+            gradient =
+                hex_of(mesh, u_m, cell) * hex_middle(hex_of(mesh, mesh.nodes_m, cell)).gradient_per_m.transpose();
+        } else {
+            Tet gradient_per_m;
+            tet_gradients_per_m(tet_of(mesh, mesh.nodes_m, cell), gradient_per_m);
+            gradient = tet_of(mesh, u_m, cell) * gradient_per_m.transpose();
+        }
+        largest = std::max(largest, (gradient - gradient.transpose()).norm() / std::sqrt(8.0));
+    }
+    return largest;
+}
+
 double max_principal_strain(const CellFields& fields) {
     double largest = 0.0;
     for (Index cell = 0; cell < fields.strain.cols(); ++cell) {

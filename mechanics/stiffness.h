@@ -30,4 +30,7 @@ CellFields cell_fields(const Mesh& mesh, std::span<const Material> materials, co
 // Returns the largest magnitude of a principal strain over all cells, which shows whether strains are still small.
 double max_principal_strain(const CellFields& fields);
 
+// Returns the largest rotation of a cell in its middle, rad, that of small displacements: the length of half the curl.
+double max_rotation_rad(const Mesh& mesh, const Eigen::Matrix3Xd& u_m);
+
 }  // namespace palpa::mechanics

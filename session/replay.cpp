@@ -20,11 +20,11 @@ void note_nodules(const scene::Plan& plan, const scene::State& state, ReplayResu
         const double radius_m = 0.5 * nodule.diameter_m.value_or(0.0);
         const double distance_m = (state.touch.p_m - Eigen::Vector2d(nodule.x_m, nodule.y_m)).norm();
         if (distance_m <= radius_m + plan.indenter_radius_m) {
-            result.over[i].lag_m = std::max(result.over[i].lag_m, lag_m);
+            result.over[i].lag_m = std::fmax(result.over[i].lag_m, lag_m);
         }
         if (distance_m <= radius_m + 4.0 * plan.indenter_radius_m) beside = false;
     }
-    if (beside) result.lag_beside_m = std::max(result.lag_beside_m, lag_m);
+    if (beside) result.lag_beside_m = std::fmax(result.lag_beside_m, lag_m);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ void begin_replay(SessionFiles files, const platform::TraceInfo& info, std::opti
 ReplayResult replay(const platform::Trace& trace, Session& session, double until_s) {
     ReplayResult result;
     result.display.surface_every = session.state.time_every;
-    for (const stiffnessmaps::Nodule& nodule : session.plan->nodules) result.over.push_back({nodule.id, 0.0});
+    for (const stiffnessmaps::Nodule& nodule : session.plan->nodules) result.over.push_back({nodule.id});
     for (const platform::Sample& sample : trace.samples) {
         take_sample(sample, session);
         note_nodules(*session.plan, session.state, result);
@@ -142,8 +142,9 @@ files::Json result_json(const Session& session, const ReplayResult& result) {
     files::Json json =
         run_json(session.scene, *session.plan, session.state, result.display.frames, result.display.latency);
     json["lag_over_nodules_mm"] = files::Json::object();
-    for (const NodulePass& pass : result.over) json["lag_over_nodules_mm"][pass.id] = 1e3 * pass.lag_m;
-    json["lag_beside_nodules_mm"] = 1e3 * result.lag_beside_m;
+    for (const NodulePass& pass : result.over)
+        json["lag_over_nodules_mm"][pass.id] = files::number_or_null(1e3 * pass.lag_m);
+    json["lag_beside_nodules_mm"] = files::number_or_null(1e3 * result.lag_beside_m);
     json["trials"] = trials_json(session);
     return json;
 }

@@ -2,6 +2,7 @@
 // Runs a recorded trace without a window, as fast as the machine can. It goes the way of a live trial (session.h), so
 // that its log is the log of the recorded trial.
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ inline constexpr double kVirtualDisplay_Hz = 60.0;
 // The greatest lag while the pen was over a nodule: nearer to its centre than its radius plus the indenter's.
 struct NodulePass {
     std::string id;
-    double lag_m = 0.0;
+    double lag_m = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing pressed there
 };
 
 // A display that shows a frame every 1/60 s of the trace's time.
@@ -39,7 +40,8 @@ void show_due(const scene::Scene& scene, const scene::Plan& plan, scene::State& 
 struct ReplayResult {
     VirtualDisplay display;
     std::vector<NodulePass> over;
-    double lag_beside_m = 0.0;  // greatest lag while every nodule was farther away than its radius + 4 indenter radii
+    // greatest lag while every nodule was farther away than its radius + 4 indenter radii; NaN: nothing pressed there
+    double lag_beside_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Returns the mode of the recorded trial; practice if the trace does not state it.

@@ -140,6 +140,13 @@ void add_exclusion(const fs::path& directory, const Exclusion& exclusion) {
                 exclusion.participant + "\t" + trial_text(exclusion) + "\t" + reason);
 }
 
+std::string replaced_by(const fs::path& directory, const std::string& code) {
+    for (const Replacement& one : read_replacements(directory)) {
+        if (one.participant == code) return one.replaced_by;
+    }
+    return "";
+}
+
 void add_replacement(const fs::path& directory, const Replacement& replacement) {
     const std::string reason = reason_text(replacement.reason);
     const std::vector<Person> people = people_of_study(directory);

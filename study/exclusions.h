@@ -32,6 +32,9 @@ struct Replacement {
 std::vector<Exclusion> read_exclusions(const std::filesystem::path& directory);
 std::vector<Replacement> read_replacements(const std::filesystem::path& directory);
 
+// Returns who has a participant's place now; "" for a participant who was not replaced. Throws as read_replacements().
+std::string replaced_by(const std::filesystem::path& directory, const std::string& code);
+
 // Append a line, which is on the disk when they return. Throw InputError, and write nothing, if it cannot be: the folder is
 // no study, the participant is not in participants.tsv, it was decided already, or the new participant has begun.
 void add_exclusion(const std::filesystem::path& directory, const Exclusion& exclusion);

@@ -93,7 +93,7 @@ int moved(const StaircaseTask& task, int level, bool correct) {
     return std::clamp(correct ? level - 1 : level + task.steps_after_wrong, 0, last);
 }
 
-// The mean level once the first reversals are over, on the way from the first level to the threshold.
+// The geometric mean level once the first reversals are over, on the way from the first level to the threshold.
 void estimate_threshold(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers,
                         StaircaseEstimate& out) {
     out.target = task.steps_after_wrong / (task.steps_after_wrong + 1.0);

@@ -59,7 +59,7 @@ struct StaircaseEstimate {
     int trials = 0;
     int reversals = 0;             // changes from right to wrong answers or back
     std::optional<double> target;  // share of right answers that weighted up-down finds
-    // Weighted up-down: mean level from the second reversal on; absent with fewer than 4 reversals. It lies above the
+    // Weighted up-down: geometric mean level from the second reversal on; absent with fewer than 4 reversals. It lies above the
     // level sought if a step is not small against sd, since the psychometric function is curved between the levels.
     std::optional<double> threshold;
     // Mean of ln(sd) in the posterior, times 0.6745, and its 95 % credible interval: the difference of which 75 % are

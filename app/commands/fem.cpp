@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 
 #include "app/commands/command_line.h"
 #include "fem/locking.h"
@@ -59,7 +60,7 @@ std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemRe
     if (const std::string locking = fem::locking_warning(model.problem); !locking.empty()) out.push_back(locking);
     if (result.linear != LinearRange::fine) {
         out.push_back("the linear range is left: " + files::short_number(100.0 * result.linear_ratio) +
-                      " % (strain, or depth over thickness or width); amber above 10, red above 25");
+                      " % (strain, rotation, or depth over thickness or width); amber above 10, red above 25");
     }
     if (result.partial)
         out.push_back("part of the pressure is beside the body: " + files::short_number(result.applied_N) +
@@ -132,10 +133,12 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     json["energy_J"] = result.solution.energy_J;
     json["max_strain"] = result.max_strain;
     json["max_von_mises_Pa"] = max_von_mises_Pa(result);
+    json["max_rotation_deg"] = 180.0 / std::numbers::pi * result.max_rotation_rad;
     json["linear_range"] = {{"gauge", range_name(result.linear)}, {"ratio", result.linear_ratio}};
     json["residual"] = result.residual;
     json["backward_error"] = result.solution.backward_error;
     if (result.large) {
+        json["max_rotation_deg"] = nullptr;
         json["linear_range"] = nullptr;
         json["backward_error"] = nullptr;
         json["newton"] = newton_json(*result.large);

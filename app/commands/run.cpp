@@ -42,10 +42,15 @@ void print_result(const files::Json& result) {
     if (backwards > 0)
         std::printf("  ! %lld samples left out: their times run backwards\n", static_cast<long long>(backwards));
     if (!result.contains("lag_over_nodules_mm")) return;
-    for (const auto& nodule : result["lag_over_nodules_mm"].items()) {
-        std::printf("  over nodule %s: lag %.3g mm\n", nodule.key().c_str(), nodule.value().get<double>());
-    }
-    std::printf("  beside the nodules: lag %.3g mm\n", result["lag_beside_nodules_mm"].get<double>());
+    const auto line = [](const std::string& where, const files::Json& lag_mm) {
+        if (lag_mm.is_null())
+            std::printf("  %s: nothing pressed there\n", where.c_str());
+        else
+            std::printf("  %s: lag %.3g mm\n", where.c_str(), lag_mm.get<double>());
+    };
+    for (const auto& nodule : result["lag_over_nodules_mm"].items())
+        line("over nodule " + nodule.key(), nodule.value());
+    line("beside the nodules", result["lag_beside_nodules_mm"]);
 }
 
 void print(const files::Json& result, bool as_json) {

@@ -17,6 +17,7 @@
 #include "files/json.h"
 #include "files/regular_file.h"
 #include "files/text.h"
+#include "study/exclusions.h"
 #include "study/read_logs.h"
 #include "study/study_folder.h"
 #include "study/withdrawal.h"
@@ -114,6 +115,11 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
     const study::Withdrawal withdrawal = study::withdrawal_of(directory, person.code);
     if (withdrawal != study::Withdrawal::none)
         json["withdrawn"] = withdrawal == study::Withdrawal::keeps_data ? "data kept" : "data left out";
+    if (const std::string successor = study::replaced_by(directory, person.code); !successor.empty())
+        json["replaced_by"] = successor;
+    for (const study::Exclusion& one : study::read_exclusions(directory)) {
+        if (one.participant == person.code && !one.trial) json["excluded"] = true;
+    }
     std::error_code error;
     if (!fs::exists(subject / "now.json", error)) return json;
     json["now"] = read_now(subject / "now.json");
@@ -170,10 +176,11 @@ std::string short_text(const std::string& field) {
 void print(const files::Json& state) {
     const std::string code = state["participant"].get<std::string>();
     std::printf("%-10s %-10s ", code.c_str(), state["group"].get<std::string>().c_str());
-    const std::string withdrew =
-        state.contains("withdrawn") ? ", withdrew, " + state["withdrawn"].get<std::string>() : "";
+    std::string left = state.contains("withdrawn") ? ", withdrew, " + state["withdrawn"].get<std::string>() : "";
+    if (state.contains("replaced_by")) left += ", replaced by " + state["replaced_by"].get<std::string>();
+    if (state.contains("excluded")) left += ", left out of the analysis";
     if (!state.contains("now")) {
-        std::printf("%s trials%s\n", state["finished"].dump().c_str(), withdrew.c_str());
+        std::printf("%s trials%s\n", state["finished"].dump().c_str(), left.c_str());
         return;
     }
     const files::Json& now = state["now"];
@@ -184,7 +191,7 @@ void print(const files::Json& state) {
         std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now.value("practice", false) ? " (practice)" : "",
                     now["condition"].get<std::string>().c_str());
     }
-    std::printf("%s\n", withdrew.c_str());
+    std::printf("%s\n", left.c_str());
     if (now.contains("present_kPa")) {
         std::printf("    first %s kPa, second %s kPa; now interval %s\n", now["present_kPa"][0].dump().c_str(),
                     now["present_kPa"][1].dump().c_str(), now["interval"].dump().c_str());

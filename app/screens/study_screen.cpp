@@ -168,6 +168,23 @@ void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answe
     if (ImGui::CalcTextSize(answer.c_str()).x > width_px - 4.0f * gui.mm()) paragraph(answer);
 }
 
+// A scale whose steps have one digit each. A digit answers the first of them that is open.
+bool takes_digits(const study::Item& item) {
+    return item.choices.empty() && item.from && *item.from >= 0 && *item.to <= 9;
+}
+
+void take_digit(const std::vector<study::Item>& items, const Gui& gui, std::vector<std::string>& answers) {
+    if (ImGui::GetIO().WantTextInput) return;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (!takes_digits(items[i]) || !answers[i].empty()) continue;
+        for (int digit = *items[i].from; digit <= *items[i].to; ++digit) {
+            if (gui.pressed('0' + digit) || gui.pressed(platform::key::pad_0 + digit))
+                answers[i] = std::to_string(digit);
+        }
+        return;
+    }
+}
+
 void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     const std::vector<study::Item>& items = due_items(run);
     std::vector<std::string>& answers = form.answers;
@@ -175,6 +192,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     const bool typed = !items.empty() && items[0].choices.empty() && !run.on_tablet;
     const bool focus = typed && answers.size() != items.size();
     answers.resize(items.size());
+    take_digit(items, gui, answers);
     const auto* rated = std::get_if<step::Ratings>(&run.step);
     title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
     if (rated != nullptr) paragraph(words::kAboutLastTrials);  // a condition's name would tell what is compared

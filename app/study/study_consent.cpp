@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "app/study/study_run.h"
+#include "study/exclusions.h"
 
 namespace palpa::app {
 namespace {
@@ -63,11 +64,20 @@ void leave_study(study::Withdrawal how, StudyRun& run) {
     if (kept(run, [&] { study::withdraw(run.directory, run.code, how); })) enter(step::Withdrawn{}, run);
 }
 
-bool withdrawn_elsewhere(StudyRun& run) {
+bool left_elsewhere(StudyRun& run) {
     auto how = study::Withdrawal::none;
-    if (!kept(run, [&] { how = study::withdrawal_of(run.directory, run.code); })) return true;
-    if (how == study::Withdrawal::none) return false;
-    enter(step::Withdrawn{}, run);
+    std::string successor;
+    const bool read = kept(run, [&] {
+        how = study::withdrawal_of(run.directory, run.code);
+        successor = study::replaced_by(run.directory, run.code);
+    });
+    if (!read) return true;
+    if (how != study::Withdrawal::none) {
+        enter(step::Withdrawn{}, run);
+        return true;
+    }
+    if (successor.empty()) return false;
+    stop_study(run.code + " was replaced by " + successor + ": further trials would not be analysed.", run);
     return true;
 }
 

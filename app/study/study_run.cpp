@@ -10,6 +10,7 @@
 #include "files/text.h"
 #include "scene/plan.h"
 #include "session/plan_in_progress.h"
+#include "study/exclusions.h"
 #include "study/names.h"
 #include "study/ratings.h"
 
@@ -139,7 +140,7 @@ void add_person(const std::vector<std::string>& answers, StudyRun& run) {
 }
 
 void begin_trial_step(StudyRun& run) {
-    if (withdrawn_elsewhere(run)) return;
+    if (left_elsewhere(run)) return;
     const study::PlannedTrial& trial = due_trial(run);
     run.told = trial.condition;
     run.told_practice = trial.practice;
@@ -152,6 +153,7 @@ void begin_trial_step(StudyRun& run) {
 
 const char* why_refused(const StudyRun& run, const std::string& code) {
     if (study::withdrawal_of(run.directory, code) != study::Withdrawal::none) return "who has withdrawn from the study";
+    if (!study::replaced_by(run.directory, code).empty()) return "who was replaced";
     return run.code.empty() ? "who is at another screen now" : "who has finished all trials";
 }
 
@@ -203,7 +205,7 @@ bool kept(StudyRun& run, const std::function<void()>& work) {
 
 void go_on(StudyRun& run) {
     run.interval = 0;
-    if (withdrawn_elsewhere(run)) return;
+    if (left_elsewhere(run)) return;
     const bool known = run.progress.known;
     if (!known && !run.protocol.consent.empty() && !run.consented) return enter(step::Consent{}, run);
     if (!known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
@@ -280,14 +282,20 @@ void enter_code(const std::string& code, StudyRun& run) {
         return refuse_code(code + " is in use at another screen; close the study there, or enter another code.", run);
     }
     auto withdrawal = study::Withdrawal::none;
+    std::string successor;
     const bool good = kept(run, [&] {
         run.progress = study::progress_of(run.directory, run.protocol, code);
         withdrawal = study::withdrawal_of(run.directory, code);
+        successor = study::replaced_by(run.directory, code);
     });
     if (!good) return;
     if (withdrawal != study::Withdrawal::none) {
         run.lock.reset();
         return refuse_code(code + " has withdrawn from the study; enter a new code.", run);
+    }
+    if (!successor.empty()) {
+        run.lock.reset();
+        return refuse_code(code + " was replaced by " + successor + "; enter that code.", run);
     }
     run.code = code;
     if (!kept(run, [&] { find_comparison(run); })) return;

@@ -87,9 +87,9 @@ void stop_study(const std::string& why, StudyRun& run);
 void answer_consent(bool given, StudyRun& run);
 void want_to_leave(StudyRun& run);
 void leave_study(study::Withdrawal how, StudyRun& run);
-// True, and the participant has stopped, if the experimenter noted a withdrawal meanwhile (palpa study withdraw), or if
-// that cannot be read.
-bool withdrawn_elsewhere(StudyRun& run);
+// True, and the participant has stopped, if the experimenter noted a withdrawal or a replacement meanwhile (palpa study
+// withdraw, replace), or if that cannot be read.
+bool left_elsewhere(StudyRun& run);
 
 // For these files alone. kept() runs `work`; an exception, such as a problem with the disk, stops the study with a
 // message before a trial is lost.

@@ -150,12 +150,13 @@ std::string error_estimate(const GenerateOptions& options, const MapTask& task, 
         Differences found;
         convergence_json(task, coarser, map, found);
         std::string text = " Estimated error of the meshes: " + files::short_number(100.0 * found.largest) +
-                           " % of the greatest force at most, " + files::short_number(100.0 * found.median) +
-                           " % in the median";
+                           " % of the greatest force where it is largest, " +
+                           files::short_number(100.0 * found.median) + " % in the median";
         if (is_rough(task))
-            text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) + " % of it at most";
+            text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) +
+                    " % of it where it is largest";
         return text + " (" + std::to_string(kProbes) + " points against meshes " + files::short_number(kCoarser) +
-               " times coarser).";
+               " times coarser); up to twice that on meshes so coarse that a contact spans one or two cells.";
     } catch (const files::InputError&) {
         return " Error of the meshes: not estimated, coarser ones cannot be made.";
     } catch (const mechanics::SolverError&) {

@@ -196,3 +196,13 @@ TEST_CASE("statics: bad input has numbers in its message") {
     problem.materials.pop_back();
     CHECK_THROWS_AS(factorise(problem, best_solver()), MaterialError);
 }
+
+TEST_CASE("statics: the rotation of cells is that of the body, for hexahedra and tetrahedra") {
+    const Mesh mesh = hex_box({{0.1, 0.08, 0.05}, {3, 2, 2}, std::nullopt});
+    const Eigen::Vector3d turn(0.02, -0.03, 0.06), stretch(0.01, -0.02, 0.03);
+    for (const Mesh& one : {mesh, split_to_tets(mesh)}) {
+        Eigen::Matrix3Xd u_m = stretch.asDiagonal() * one.nodes_m;
+        for (Eigen::Index i = 0; i < u_m.cols(); ++i) u_m.col(i) += turn.cross(Eigen::Vector3d(one.nodes_m.col(i)));
+        CHECK(max_rotation_rad(one, u_m) == close_to(0.07).epsilon(1e-12));
+    }
+}

@@ -258,6 +258,10 @@ TEST_CASE("replay: over the nodules the avatar lags at least 0.5 mm and 5 times 
     }
     CHECK(session.state.counters.dropped_steps == 0);
     CHECK(session.state.counters.off_tissue == 0);
+    Trace short_trace = read_trace(default_trace());
+    short_trace.samples.resize(1);  // before the first nodule
+    Session not_there;
+    for (const NodulePass& pass : result_of(short_trace, not_there).over) CHECK(std::isnan(pass.lag_m));
 }
 
 TEST_CASE("replay: a trace that was written reads back to the same run") {

@@ -116,6 +116,29 @@ TEST_CASE("fem solve: the VTU holds the field that the JSON sums up") {
     CHECK(vtu.doubles("material") == std::vector<double>(1008, 0.0));
 }
 
+TEST_CASE("fem solve: a bar that bends far is not green, though its strains are small") {
+    const TemporaryFolder folder;
+    // E 10 kPa, 10 x 10 x 100 mm, clamped below; the elastica says 34.9 mm for 1 mN, where small displacements say 40
+    const auto solved = [&](double traction_Pa) {
+        write_text_atomically(
+            folder / "c.json",
+            R"({"mesh": {"box": {"size_mm": [10, 10, 100], "elements": [2, 2, 20]}}, "element": "hex8i",
+                "materials": {"gel": {"young_Pa": 10000, "poisson": 0.3}},
+                "supports": [{"face": "zmin", "fix": "xyz"}], "loads": [{"face": "zmax", "traction_Pa": [)" +
+                number_text(traction_Pa) + ", 0, 0]}]}");
+        const Called called = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
+        CAPTURE(called.err);
+        CHECK(called.status == 0);
+        return parse_json(called.out, "stdout");
+    };
+    CHECK(solved(2.0)["linear_range"]["gauge"] == "green");
+    const Json bent = solved(10.0);
+    CHECK(bent["linear_range"]["gauge"] == "amber");
+    CHECK(bent["max_strain"].get<double>() < 0.1);
+    CHECK(bent["max_rotation_deg"].get<double>() == close_to(34.4).epsilon(0.05));  // F L^2 / (2 E I)
+    CHECK(solved(20.0)["linear_range"]["gauge"] == "red");
+}
+
 TEST_CASE("fem solve: leaving the linear range and a load beside the body are said, and the answer given") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.json", case_text(kSlab, "tet4", kClamped, press_at(0, 50, 16, 2.5)));

@@ -193,3 +193,21 @@ TEST_CASE("study screen: answers that are not logged yet are not closed over wit
     carry_out(close, desk.window, desk.gui, desk.app);
     CHECK(desk.app.quit);
 }
+
+TEST_CASE("study screen: digits answer the scales one after the other, and Enter goes on") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    files::Json json = files::read_json(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
+    json["demographics"] = {{{"id", "tired"}, {"text", "Tired?"}, {"from", 1}, {"to", 7}},
+                            {{"id", "skill"}, {"text", "Skilled?"}, {"from", 0}, {"to", 10}},
+                            {{"id", "calm"}, {"text", "Calm?"}, {"from", 0}, {"to", 9}}};
+    files::write_text_atomically(folder / "p.json", json.dump());
+    desk.app.doing = open_study_run(read_protocol(folder / "p.json"), folder / "log", "p1");
+    live_frames(desk, 3);
+    for (const int key : {SDLK_8, SDLK_5, SDLK_0, SDLK_3}) {
+        tap(desk.window, key);
+        live_frames(desk, 4);
+    }
+    CHECK(desk.app.view.study.answers == std::vector<std::string>{"5", "", "0"});
+}
