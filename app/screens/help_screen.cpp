@@ -1,7 +1,7 @@
 // The list of keys, and the tissue's cover while the clock is stopped.
 
 #include <algorithm>
-#include <iterator>
+#include <vector>
 
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
@@ -15,32 +15,38 @@ struct KeyLine {
     const char* does;
 };
 
-constexpr KeyLine kKeyLines[] = {{words::kKeyArrows, words::kKeyArrowsDo},
-                                 {words::kKeySpace, words::kKeySpaceDo},
-                                 {words::kKeyPages, words::kKeyPagesDo},
-                                 {words::kKeyMark, words::kKeyMarkDo},
-                                 {words::kKeyConfidence, words::kKeyConfidenceDo},
-                                 {words::kKeyUndo, words::kKeyUndoDo},
-                                 {words::kKeyFinish, words::kKeyFinishDo},
-                                 {words::kKeyPause, words::kKeyPauseDo},
-                                 {words::kKeyAgain, words::kKeyAgainDo},
-                                 {words::kKeyNext, words::kKeyNextDo},
-                                 {words::kKeyPicture, words::kKeyPictureDo},
-                                 {words::kKeyMenu, words::kKeyMenuDo},
-                                 {words::kKeyScreens, words::kKeyScreensDo},
-                                 {words::kKeyInset, words::kKeyInsetDo},
-                                 {words::kKeyHold, words::kKeyHoldDo},
-                                 {words::kKeyCost, words::kKeyCostDo},
-                                 {words::kKeyStop, words::kKeyStopDo},
-                                 {words::kKeyWindow, words::kKeyWindowDo}};
+std::vector<KeyLine> key_lines(bool in_browser) {
+    std::vector<KeyLine> lines{{words::kKeyArrows, words::kKeyArrowsDo},         {words::kKeySpace, words::kKeySpaceDo},
+                               {words::kKeyPages, words::kKeyPagesDo},           {words::kKeyMark, words::kKeyMarkDo},
+                               {words::kKeyConfidence, words::kKeyConfidenceDo}, {words::kKeyUndo, words::kKeyUndoDo},
+                               {words::kKeyFinish, words::kKeyFinishDo},         {words::kKeyPause, words::kKeyPauseDo},
+                               {words::kKeyAgain, words::kKeyAgainDo},           {words::kKeyNext, words::kKeyNextDo},
+                               {words::kKeyPicture, words::kKeyPictureDo},       {words::kKeyMenu, words::kKeyMenuDo}};
+    if (in_browser) {
+        lines.push_back({words::kKeyScreensWeb, words::kKeyScreensWebDo});
+    } else {
+        lines.push_back({words::kKeyScreens, words::kKeyScreensDo});
+    }
+    lines.push_back({words::kKeyInset, words::kKeyInsetDo});
+    lines.push_back({words::kKeyHold, words::kKeyHoldDo});
+    lines.push_back({words::kKeyCost, words::kKeyCostDo});
+    if (in_browser) {
+        lines.push_back({words::kKeyWindowWeb, words::kKeyWindowWebDo});
+    } else {
+        lines.push_back({words::kKeyStop, words::kKeyStopDo});
+        lines.push_back({words::kKeyWindow, words::kKeyWindowDo});
+    }
+    return lines;
+}
 
 }  // namespace
 
-void draw_help(const Shown&, Gui& gui, ViewState& view) {
+void draw_help(const Shown& shown, Gui& gui, ViewState& view) {
     const WindowSize window = gui.size_px();
     gui.claim({0.0f, 0.0f, window.width, window.height});  // nothing is palpated meanwhile
     const float width_px = std::min(window.width, 150.0f * gui.mm());
-    const float lines = static_cast<float>(std::size(kKeyLines)) + 2.5f;
+    const std::vector<KeyLine> keys = key_lines(shown.notices.keeps_trials);
+    const float lines = static_cast<float>(keys.size()) + 2.5f;
     const float needed_px = lines * ImGui::GetTextLineHeightWithSpacing() + (kTarget_mm + 12.0f) * gui.mm();
     const float height_px = std::min(window.height, needed_px);
     const float x0 = 0.5f * (window.width - width_px);
@@ -56,9 +62,9 @@ void draw_help(const Shown&, Gui& gui, ViewState& view) {
     ImGui::BeginChild("keys", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     float column_px = 0.0f;
-    for (const KeyLine& line : kKeyLines) column_px = std::max(column_px, ImGui::CalcTextSize(line.key).x);
+    for (const KeyLine& line : keys) column_px = std::max(column_px, ImGui::CalcTextSize(line.key).x);
     column_px += 5.0f * gui.mm();
-    for (const KeyLine& line : kKeyLines) {
+    for (const KeyLine& line : keys) {
         const float left_px = ImGui::GetCursorPosX();
         ImGui::TextUnformatted(line.key);
         ImGui::SameLine();

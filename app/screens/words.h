@@ -223,6 +223,9 @@ inline constexpr const char* kKeyMenuDo = "menu; arrows and Enter choose in it";
 inline constexpr const char* kKeyScreens = "V, B, D, Z, T, G, E";
 inline constexpr const char* kKeyScreensDo =
     "history, maps, device check, screen scale, arm and pins, soft device, parts";
+inline constexpr const char* kKeyScreensWeb = "B, D, Z, T, Y, E";
+inline constexpr const char* kKeyScreensWebDo =
+    "maps, device check, screen scale, trials on this tablet, studies, parts";
 inline constexpr const char* kKeyInset = "X";
 inline constexpr const char* kKeyInsetDo = "show or hide the side view";
 inline constexpr const char* kKeyHold = "H";
@@ -237,6 +240,8 @@ inline constexpr const char* kKeyStop = "F12";
 inline constexpr const char* kKeyStopDo = "stop arm, pins and soft device at once, on every screen";
 inline constexpr const char* kKeyWindow = "F11, Ctrl Q, Esc";
 inline constexpr const char* kKeyWindowDo = "full screen, quit, back";
+inline constexpr const char* kKeyWindowWeb = "F11, Esc";
+inline constexpr const char* kKeyWindowWebDo = "full screen, back";
 
 // history
 inline constexpr const char* kNoHistory = "No results yet. Each finished trial is listed here.";
@@ -633,7 +638,7 @@ inline constexpr const char* kThereAre = "Number of nodules: {}.";
 inline constexpr const char* kTimeOf = "{} of {}";
 inline constexpr const char* kTimeOver = "{} of {}: time is up";
 inline constexpr const char* kExperimenter = "Experimenter: trial {}, {}";
-inline constexpr const char* kAllOnTablet = "Participant {}: all trials are saved on this tablet ({}).";
+inline constexpr const char* kAllOnTablet = "Participant {}: all trials are saved ({}), on this tablet or at the desk.";
 inline constexpr const char* kAllOnDisk = "Participant {}: all trials are saved ({}).";
 inline constexpr const char* kRestKept =
     "All trials that were finished before are saved. To continue, start the study again with the same participant "
@@ -658,7 +663,9 @@ inline constexpr const char* pageStopped = "Palpa has stopped: {}";
 inline constexpr const char* pageNotHere = "This study cannot be run here. {}";
 inline constexpr const char* pageLooking = "Looking for protocols";
 inline constexpr const char* pageRemoveAsk =
-    "Delete the exported trials from this tablet? The exported file is then the only copy.";
+    "Delete the exported trials from this tablet? Of those that are not at the desk, the exported file is then the "
+    "only "
+    "copy.";
 inline constexpr const char* pageNotLoaded = "the program cannot be loaded; is the desk reachable?";
 inline constexpr const char* pageAnswered = "The desk answered {} to {}.";
 inline constexpr const char* pageInTheApp = "included in the app";

@@ -89,10 +89,19 @@ std::string rest_of(const fs::path& file, std::size_t from) {
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+// Whether the last row of a run that is over says that it was interrupted.
+bool ended_early(const study::RunFiles& run) {
+    const fs::path events = run.file("_events.tsv");
+    if (!fs::exists(events)) return false;
+    const std::string text = files::read_text(events);
+    const auto last = text.size() < 2 ? std::string::npos : text.rfind('\n', text.size() - 2);
+    return last != std::string::npos && text.find("\tinterrupted\t", last) != std::string::npos;
+}
+
 }  // namespace
 
 void BrowserKeeper::keep(const study::RunFiles& run, bool finished) {
-    keep_run(run, finished ? "finished" : "going-on");
+    keep_run(run, !finished ? "going-on" : ended_early(run) ? "ended-early" : "finished");
     if (!finished) return;
     empty_files(run);
     parts_.clear();

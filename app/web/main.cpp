@@ -109,15 +109,28 @@ std::string study_folder(const std::string& name, const study::Protocol& protoco
     return "/studies/" + folder;
 }
 
+// Conditions that drive a device need the desk's machine; the menu does not offer them either (studies.js).
+bool needs_devices(const std::filesystem::path& protocol) {
+    const auto drives = [](const study::Condition& condition) {
+        const bool device =
+            condition.modality == study::Modality::shape_display || condition.modality == study::Modality::tangible;
+        return device && !condition.scene.empty();
+    };
+    const study::Protocol read = study::read_protocol(protocol);
+    return std::any_of(read.conditions.begin(), read.conditions.end(), drives);
+}
+
 // Chooses the study that the page's address names. Throws InputError if there is none of that name.
 void choose_study(const std::string& name, RunOptions& options) {
     const std::filesystem::path folder = "/assets/protocols";
     const std::filesystem::path file = folder / (name + ".json");
-    std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().stem().string());
-    std::string known;
-    for (const std::string& one : names) known += " " + one;
     if (name.find('/') != std::string::npos || !std::filesystem::exists(file)) {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            if (!needs_devices(entry.path())) names.insert(entry.path().stem().string());
+        }
+        std::string known;
+        for (const std::string& one : names) known += " " + one;
         throw files::bad_input("?protocol", "", files::shown(name),
                                "one of" + known + ", or of a desk that this tablet is paired with");
     }

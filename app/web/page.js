@@ -32,10 +32,10 @@ const palpaPage = (() => {
             line.textContent = `${trial.name}: ${trial.words}`;
             return line;
         }));
-        at('pair').hidden = state.paired;
+        at('pair').hidden = !state.asksCode;
         at('send-now').disabled = !state.paired || state.waiting === 0;
         at('export').disabled = state.waiting === 0;
-        at('remove').disabled = !state.trials.some((trial) => trial.exported);
+        at('remove').disabled = !state.trials.some((trial) => trial.exported && !trial.sent);
     };
 
     const openTrials = () => {
@@ -104,7 +104,9 @@ const palpaPage = (() => {
 
     at('pair').addEventListener('submit', async (event) => {
         event.preventDefault();
-        await palpaTrials.pair(at('code').value.replace(/\s/g, ''));
+        const code = at('code').value.replace(/\s/g, '');
+        if (code === '') return; // would count as a wrong one
+        await palpaTrials.pair(code);
         at('code').value = '';
         show();
     });

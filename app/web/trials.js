@@ -1,5 +1,5 @@
 // Trials are kept in the browser's storage (IndexedDB) until the desk has said that it has the same bytes.
-// A trial: {name, text, sha256, finished, exported, sent}; text is gone once it was sent (docs/tablet.md).
+// A trial: {name, text, sha256, finished, endedEarly, exported, sent}; text is gone once it was sent (docs/tablet.md).
 // Beside them: `study`, files that a study goes on from; `parts` of the trial that is going on; `files` of the desk;
 // `designs`, part files that a person has changed.
 'use strict';
@@ -26,7 +26,9 @@ const palpaTrials = (() => {
     let changed = () => {};
     let lastWord = '';         // of the desk
     let persistent = false;
-    let open_to_all = false;   // the desk asks for no code
+    let open_to_all = false;   // the desk takes logs without a code
+    let asksCode = true;       // as far as is known
+    let takesNone = false;     // no logs at all
 
     const remember = (key, value) => {
         try {
@@ -105,7 +107,7 @@ const palpaTrials = (() => {
     });
 
     const note = (trial) => trials.set(trial.name, {name: trial.name, sha256: trial.sha256, finished: trial.finished,
-                                                     exported: !!trial.exported, sent: !!trial.sent});
+                                                     endedEarly: !!trial.endedEarly, exported: !!trial.exported, sent: !!trial.sent});
     // A list beside the storage: what is missing from that was taken away by the browser.
     const noteNames = () => remember('palpa-kept', JSON.stringify([...trials.values()].filter((t) => !t.sent).map((t) => t.name)));
 
@@ -170,14 +172,16 @@ const palpaTrials = (() => {
             const answer = await fetch('api/health', {signal: AbortSignal.timeout(kWait_ms)});
             if (!answer.ok || !(answer.headers.get('Content-Type') || '').includes('json')) return;
             const {pairing, collects} = await answer.json();
-            open_to_all = pairing === false && collects === true;
-            if (collects === false) lastWord = palpaWords.takesNoLogs;
+            asksCode = pairing !== false;
+            takesNone = collects === false;
+            open_to_all = !asksCode && collects === true;
         } catch (away) {
             // no desk: trials wait here
         }
     };
     const credentials = () => recall('palpa-token') ? {Authorization: `Bearer ${recall('palpa-token')}`} : {};
-    const maySend = () => open_to_all || recall('palpa-token') !== '';
+    const isPaired = () => asksCode && recall('palpa-token') !== '';
+    const maySend = () => !takesNone && (open_to_all || isPaired());
 
     // In one transaction, so that what a study goes on from always fits the trials that are kept.
     const save = async (trial, files, isNew) => {
@@ -200,16 +204,17 @@ const palpaTrials = (() => {
 
     const contentOf = (path) => FS.readFile(path, {encoding: 'utf8'});
 
-    // `how`: finished, going on, or broken off (left by an earlier page). `paths`: of files that the study goes on from.
+    // `how`: finished, ended early, going on, or broken off (left by an earlier page). `paths`: of files that the study goes on from.
     const put = async (name, text, sha256, how, paths) => {
         ++writing;
         const broken = how === 'broken-off';
-        const finished = how === 'finished';
+        const endedEarly = how === 'ended-early';
+        const finished = endedEarly || how === 'finished';
         const isNew = !broken && !current.has(name);
         if (!broken) current.add(name);
         restoring.delete(name);
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
-        const trial = {name, text, sha256, finished, exported: false, sent: false};
+        const trial = {name, text, sha256, finished, endedEarly, exported: false, sent: false};
         const files = paths.map((path) => ({path, text: contentOf(path)}));
         try {
             await save(trial, files, isNew);
@@ -327,7 +332,7 @@ const palpaTrials = (() => {
     // The square that the desk shows says #code=...
     const pairByAddress = async () => {
         const code = new URLSearchParams(location.hash.slice(1)).get('code');
-        if (!code) return;
+        if (!code || !asksCode) return;
         history.replaceState(null, '', location.pathname + location.search);
         await pair(code);
     };
@@ -374,9 +379,10 @@ const palpaTrials = (() => {
         changed();
     };
 
+    // What is at the desk takes no room, and its name counts there.
     const removeExported = async () => {
         for (const {name, exported, sent} of [...trials.values()]) {
-            if (!exported && !sent) continue;
+            if (!exported || sent) continue;
             await request('readwrite', (store) => store.delete(name));
             trials.delete(name);
         }
@@ -390,17 +396,17 @@ const palpaTrials = (() => {
         if (isInDanger(trial)) return palpaWords.exportIt;
         if (trial.sent) return palpaWords.atDesk;
         if (!isOver(trial)) return palpaWords.inProgress;
-        return (trial.finished ? palpaWords.waiting : palpaWords.interruptedWaiting) + (trial.exported ? palpaWords.exported : '');
+        return (trial.finished && !trial.endedEarly ? palpaWords.waiting : palpaWords.interruptedWaiting) + (trial.exported ? palpaWords.exported : '');
     };
 
     const state = () => {
         const waiting = toSend().length;
         const paired = maySend();
         const lines = [palpaFilled(palpaWords.howMany, waiting, [...trials.values()].filter((t) => t.sent).length)];
-        lines.push(recall('palpa-token') !== '' ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
+        lines.push(takesNone ? palpaWords.takesNoLogs : isPaired() ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
         if (!persistent) lines.push(palpaWords.mayDelete);
         if (lastWord) lines.push(lastWord);
-        return {lines, paired, waiting, trials: known().map((t) => ({...t, words: words(t)}))};
+        return {lines, paired, waiting, asksCode: asksCode && !isPaired(), trials: known().map((t) => ({...t, words: words(t)}))};
     };
 
     const noteText = () => {

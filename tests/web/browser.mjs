@@ -20,10 +20,10 @@ const strict = {'Content-Security-Policy': "default-src 'self'; script-src 'self
     'X-Content-Type-Options': 'nosniff', 'Referrer-Policy': 'no-referrer'};
 
 // The site, and what `palpa serve` answers to tablets. `desk.wrong`: it says that it got other bytes; `silent`: it answers
-// nothing, and closes nothing; `too_large`: the logs that it does not take; `pairing`: it asks for a code;
+// nothing, and closes nothing; `too_large`: the logs that it does not take; `pairing`: it asks for a code; `collects`: it takes logs;
 // `locked_s`: it looks at none for so long.
 export async function openDesk() {
-    const desk = {code: '246810', token: 'token-of-the-test', logs: new Map(), wrong: false, bytes: 0, reachable: true, silent: false, too_large: () => false, pairing: true, locked_s: 0};
+    const desk = {code: '246810', token: 'token-of-the-test', logs: new Map(), wrong: false, bytes: 0, reachable: true, silent: false, too_large: () => false, pairing: true, collects: true, locked_s: 0};
     const body = (request) => new Promise((resolve) => {
         const parts = [];
         request.on('data', (part) => parts.push(part));
@@ -37,7 +37,7 @@ export async function openDesk() {
         const url = new URL(request.url, 'http://desk');
         if (!desk.reachable) return response.destroy();
         if (desk.silent && url.pathname.startsWith('/api/')) return;
-        if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: desk.pairing, collects: true});
+        if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: desk.pairing, collects: desk.collects});
         if (url.pathname === '/api/pair') {
             const {code} = JSON.parse(await body(request));
             if (desk.locked_s > 0) {

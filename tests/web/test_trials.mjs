@@ -86,6 +86,34 @@ test('the desk is gone: trials wait, also over a restart without a network, and 
     assert.equal(desk.logs.size, 1);
 }));
 
+test('exported trials are deleted, those at the desk keep their names and count; a trial ended early is called interrupted', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    await pairByDialog(page, desk.code);
+    await finishTrial(browser);
+    await until('at the desk', async () => (await stored(page)).some((t) => t.sent));
+    desk.reachable = false;
+    await page.keyboard.press('r');
+    await frames(page, 4);
+    await pen(browser, 'mousePressed', 700, 400, 0.4);
+    await pen(browser, 'mouseReleased', 700, 400, 0);
+    await frames(page, 2);
+    await page.keyboard.press('m');
+    await frames(page, 2);
+    await page.keyboard.press('r');
+    await frames(page, 4);
+    await page.keyboard.press('Enter'); // ends it
+    await until('kept', async () => (await stored(page)).filter((t) => t.finished).length === 2);
+    const words = () => page.evaluate(() => palpaTrials.state().trials.map((t) => t.words));
+    assert.ok((await words()).includes('interrupted, waiting'), String(await words()));
+    await page.evaluate(() => palpaTrials.open());
+    await page.click('#export');
+    await until('exported', async () => (await words()).includes('interrupted, waiting, exported'));
+    page.once('dialog', (dialog) => dialog.accept());
+    await page.click('#remove');
+    await until('deleted', async () => (await stored(page)).filter((t) => t.finished).length === 1);
+    assert.match((await page.evaluate(() => palpaTrials.state().lines)).join(' '), /^0 waiting, 1 at the desk\./);
+}));
+
 test('a full storage is said at once, the next trial waits, export saves it and lets it begin', () => withPage({}, async (browser) => {
     const {page} = browser;
     await page.evaluate(() => {

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import test from 'node:test';
-import {frames, report, rows, withPage} from './browser.mjs';
+import {frames, report, rows, started, withPage} from './browser.mjs';
 import {finishTrial, pairByDialog, stored, until} from './trials.mjs';
 
 const soon = (page) => page.waitForFunction(() => document.getElementById('message').hidden, null, {timeout: 20000});
@@ -40,6 +40,22 @@ test('a desk without a code that was away at the start gets the trials when it i
     desk.silent = false;
     await page.evaluate(() => window.dispatchEvent(new Event('online')));
     await until('at the desk', async () => (await stored(page)).some(({finished, sent}) => finished && sent));
+}));
+
+test('a desk that needs no code is asked for none, and one that takes no logs goes on saying so', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    desk.pairing = false;
+    desk.collects = false;
+    await page.evaluate(() => localStorage.setItem('palpa-token', 'of another desk'));
+    await page.reload();
+    await started(page);
+    await finishTrial(browser);
+    await until('stored', async () => (await stored(page)).some(({finished}) => finished));
+    await page.evaluate(() => palpaTrials.send());
+    await page.evaluate(() => palpaTrials.open());
+    assert.match(await page.textContent('#trials-state'), /This desk does not accept logs/);
+    assert.doesNotMatch(await page.textContent('#trials-state'), /Paired/);
+    assert.equal(await page.isVisible('#pair'), false);
 }));
 
 test('a browser that asks whether the page may stay, and gets no answer, starts all the same', () => withPage({quiet: true}, async ({page}) => {
