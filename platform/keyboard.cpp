@@ -44,6 +44,10 @@ void begin_to_hold(double t_host_s, Keyboard& keyboard) {
     move_cursor(t_host_s, keyboard);
 }
 
+bool same_place(const KeyboardArea& a, const KeyboardArea& b) {
+    return a.x0_px == b.x0_px && a.y0_px == b.y0_px && a.x1_px == b.x1_px && a.y1_px == b.y1_px;
+}
+
 bool is_arrow(PointerKey key) { return key <= PointerKey::down; }
 
 }  // namespace
@@ -59,9 +63,10 @@ bool key_held(const Keyboard& keyboard) {
 
 void set_area(const KeyboardArea& area, Keyboard& keyboard) {
     const bool was_on = is_on(keyboard);
+    if (was_on) keyboard.left = keyboard.area;
     keyboard.area = area;
     if (!is_on(keyboard)) return release_keys(keyboard);
-    if (!was_on) {
+    if (!was_on && !same_place(area, keyboard.left)) {
         keyboard.x_px = 0.5 * (area.x0_px + area.x1_px);
         keyboard.y_px = 0.5 * (area.y0_px + area.y1_px);
     }

@@ -29,6 +29,7 @@ struct KeyboardArea {
 
 struct Keyboard {
     KeyboardArea area;
+    KeyboardArea left;  // the area before the pointer was turned off
     HeldPressure button;
     double x_px = 0.0;  // the cursor, at moved_s
     double y_px = 0.0;
@@ -41,8 +42,9 @@ struct Keyboard {
 bool is_on(const Keyboard& keyboard);
 bool key_held(const Keyboard& keyboard);  // an arrow or the press key is held: samples come without events
 
-// Sets a new area. The cursor starts in its middle if the pointer was off, else it is moved inside. If the area turns
-// the pointer off, all keys are released; the caller cancels a press in progress.
+// Sets a new area, into which the cursor is moved. It starts in the middle if the pointer was off, but stays where it was if
+// the area is that before, as after a page of help. If the area turns the pointer off, all keys are released; the caller
+// cancels a press in progress.
 void set_area(const KeyboardArea& area, Keyboard& keyboard);
 
 // While a key is held: appends one sample for each grid point up to and including `t_host_s` that has none yet, with

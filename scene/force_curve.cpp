@@ -115,6 +115,7 @@ bool serves(const ForceCurveTissue&, const Scene&) { return true; }
 
 void describe_curve(const ForceCurve& curve, const Scene& scene, Plan& plan) {
     plan.greatest_force_N = scene.stiffness_scale * force_at_N(curve, curve.greatest_depth_m);
+    plan.known_N = plan.greatest_force_N;
     plan.greatest_depth_m = curve.greatest_depth_m;
     for (const int third : {1, 2})
         plan.zone_N[static_cast<std::size_t>(third - 1)] =

@@ -117,6 +117,7 @@ void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan) {
     plan.source = stiffnessmaps::SourceKind::simulated;
     plan.nodules = stiffnessmaps::placed_nodules(phantom);
     plan.greatest_force_N = kBarOfLinear_N;
+    plan.known_N = plan.greatest_force_N;
     plan.greatest_depth_m = phantom.depths_m.back();
     for (const int third : {1, 2})
         plan.zone_N[static_cast<std::size_t>(third - 1)] =

@@ -189,6 +189,7 @@ void describe(const MapTissue& tissue, const Scene& scene, Plan& plan) {
     for (const int third : {1, 2})
         plan.zone_N[static_cast<std::size_t>(third - 1)] =
             scene.stiffness_scale * median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
+    plan.known_N = std::max(plan.zone_N[1], scene.stiffness_scale * median_force_N(tissue, plan.greatest_depth_m));
     plan.indenter_radius_m = map.indenter_radius_m;
     if (map.indenter == stiffnessmaps::IndenterShape::cylinder) plan.indenter = DrawnIndenter::probe;
     const Eigen::Vector2d first(map.origin_m[0], map.origin_m[1]);

@@ -256,6 +256,7 @@ void describe(const PartTissue& tissue, const Scene& scene, Plan& plan) {
         plan.greatest_force_N = &design == &first ? force_N : std::max(plan.greatest_force_N, force_N);
         plan.greatest_depth_m = std::max(plan.greatest_depth_m, depth_m);
     }
+    plan.known_N = plan.greatest_force_N;
     plan.zone_N = {plan.greatest_force_N / 3.0, 2.0 * plan.greatest_force_N / 3.0};
     plan.indenter_radius_m = std::max(1e-3, 0.5 * first.load.patch_m);
     plan.area.size_m = tissue.size_m;

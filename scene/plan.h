@@ -30,6 +30,7 @@ struct Plan {
     // Forces that reach a third and two thirds of greatest_depth_m on plain tissue: they part light, medium and deep
     // palpation.
     std::array<double, 2> zone_N{0.0, 0.0};
+    double known_N = 1.0;  // force that reaches greatest_depth_m there: what lies above is beyond the known depth
     TissueArea area;
     double indenter_radius_m = 4e-3;
     DrawnIndenter indenter = DrawnIndenter::ball;

@@ -3,6 +3,7 @@
 #include "session/tangible_run.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -207,6 +208,14 @@ void note_less_depth(const session::Finger& finger, files::Json& json) {
                             " mm: three quarters of the depth that the tissue is known for");
 }
 
+// A motion that leads the finger by its depth moves the hand too.
+void note_idle_hand(const std::string& plant_name, bool by_force, files::Json& json) {
+    if (plant_name.empty() || by_force || !(tangible::read_plant(plant_name).hand.mass_kg > 0.0)) return;
+    json["notes"].push_back(
+        "the hand of " + plant_name +
+        " has no effect: the finger follows a motion here; --press with force_N lets the hand push");
+}
+
 void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Scene scene = load_scene(arguments.scene);
     if (!scene.tangible) throw files::bad_input(arguments.scene, "tangible", "no such key", "one that names a device");
@@ -227,6 +236,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
         check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
         if (row.depth_m > deepest_m) deepest_m = row.depth_m;  // NaN: a press by force
     }
+    const bool by_force = !press.empty() && std::isfinite(press.front().force_N);
     const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
@@ -237,6 +247,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     if (real) name_limits(result.guarded, json);
     note_missed(plan->loop.rate_Hz, json);
     note_beyond(deepest_m, *plan, json);
+    note_idle_hand(plant_name, by_force, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())

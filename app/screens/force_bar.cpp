@@ -12,7 +12,7 @@
 namespace palpa::app {
 namespace {
 
-// How far the force bar reaches beyond the force of the known depth.
+// How far the force bar reaches beyond the greatest force at the known depth.
 constexpr double kBarOver = 1.25;
 
 double force_limit_N(const Shown& shown) {
@@ -51,9 +51,10 @@ double felt_force_N(const Shown& shown) {
 }
 
 void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
-    const double known_N = std::max(0.1, shown.plan.greatest_force_N);
+    const double greatest_N = std::max(0.1, shown.plan.greatest_force_N);
+    const double known_N = std::clamp(shown.plan.known_N, 0.1, greatest_N);
     const double limit_N = force_limit_N(shown);
-    const double full_N = std::max(kBarOver * known_N, std::isfinite(limit_N) ? kBarOver * limit_N : 0.0);
+    const double full_N = std::max(kBarOver * greatest_N, std::isfinite(limit_N) ? kBarOver * limit_N : 0.0);
     const float mm = gui.mm();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width_px = 8.0f * mm;

@@ -27,6 +27,7 @@ std::shared_ptr<const scene::Plan> smoothed_anew(const scene::Plan& reference, c
     plan.greatest_force_N = reference.greatest_force_N;
     plan.greatest_depth_m = reference.greatest_depth_m;
     plan.zone_N = reference.zone_N;
+    plan.known_N = reference.known_N;
     return std::make_shared<const scene::Plan>(std::move(plan));
 }
 

@@ -62,6 +62,24 @@ TEST_CASE("keyboard: the cursor starts in the middle, stays in the area, and sta
     CHECK(keyboard.y_px == 180.0);
 }
 
+TEST_CASE("keyboard: after a page that turned it off the cursor is where it was, in another area in the middle") {
+    Keyboard keyboard = keyboard_on();
+    const KeyboardArea area = keyboard.area;
+    std::vector<Sample> out;
+    down(10.0, PointerKey::left, keyboard, out);
+    hold_keys(10.5, keyboard, out);
+    up(10.5, PointerKey::left, keyboard, out);
+    const double x_px = keyboard.x_px;
+    REQUIRE(x_px < 300.0);
+    set_area({}, keyboard);
+    set_area({}, keyboard);
+    set_area(area, keyboard);
+    CHECK(keyboard.x_px == x_px);
+    set_area({}, keyboard);
+    set_area({0.0, 0.0, 1000.0, 1000.0, 120.0}, keyboard);
+    CHECK(keyboard.x_px == 500.0);
+}
+
 TEST_CASE("keyboard: an arrow moves the cursor on the grid, hovering, and says where it stopped") {
     Keyboard keyboard = keyboard_on();
     std::vector<Sample> out;

@@ -33,6 +33,13 @@ std::vector<std::string> stages_of(const char* scene) {
 
 }  // namespace
 
+TEST_CASE("plan: the known depth of plain tissue ends below the greatest force, which a nodule answers with") {
+    const Plan plan = make_plan(read_scene(kAssets / "scenes" / "default.json", kAssets));
+    CHECK(plan.zone_N[1] < plan.known_N);
+    CHECK(plan.known_N == doctest::Approx(2.94).epsilon(0.03));  // of plain tissue at 7 mm
+    CHECK(plan.greatest_force_N > 3.6);
+}
+
 TEST_CASE("plan: only what the scene asks for, in the order of the road") {
     using Names = std::vector<std::string>;
     CHECK(stages_of("off.json") == Names{"calibration", "position", "depth", "tangential"});

@@ -157,6 +157,16 @@ TEST_CASE("tangible run: a press deeper than the tissue is known for is named") 
     CHECK(contains(deep.err, "goes 9 mm deep, and the tissue is known for 8 mm"));
 }
 
+TEST_CASE("tangible run: a hand that a motion leads has no effect, which is said") {
+    const StripFolder strip;
+    files::write_text_atomically(strip.folder / "hand.json", R"({"name": "h", "hand": {"mass_kg": 0.2}})");
+    files::write_text_atomically(strip.folder / "p.tsv", "t_s\tx_mm\ty_mm\tforce_N\n0\t0\t0\t0\n0.2\t0\t0\t0.1\n");
+    const std::string run =
+        "tangible run " + strip.path("scene.json") + " --headless --seconds 0.2 --plant " + strip.path("hand.json");
+    CHECK(contains(palpa_with(run).out, "hand.json has no effect: the finger follows a motion here"));
+    CHECK_FALSE(contains(palpa_with(run + " --press " + strip.path("p.tsv")).out, "has no effect"));
+}
+
 TEST_CASE("tangible run: ticks that were missed are named") {
     const StripFolder strip;
     const Called live = palpa_with("tangible run " + strip.path("scene.json") +
