@@ -40,7 +40,11 @@ std::array<double, 2> loaded_m(const Part& part, const PartLoad& load, std::size
 
 BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m) {
     if (!part.axis) return {0, 0, true, "the part names no axis"};
-    if (largest_axis(load.direction) == *part.axis) return {0, 0, true, "the load is along the axis"};
+    if (largest_axis(load.direction) == *part.axis) {
+        const bool straight = std::abs(load.direction[static_cast<std::size_t>(*part.axis)]) > 1.0 - 1e-6;
+        return {0, 0, true,
+                straight ? "the load is along the axis" : "the load is no less along the axis than across it"};
+    }
     const BeamSpan unclamped{0, 0, true, "the part is not clamped by one side square to its axis, or one box"};
     if (part.supports.size() != 1 || part.supports[0].axes != 7) return unclamped;
     const PartSupport& support = part.supports[0];
