@@ -23,6 +23,7 @@ class TrialKeeper {
     virtual bool ready() const = 0;                         // true if everything that was handed over is stored
     virtual std::string problem() = 0;     // why something could not be stored, for people; each problem once, then ""
     virtual std::string note() const = 0;  // what is kept, for people
+    virtual std::string where(const std::string& code) const = 0;  // where a participant's trials are; "": not known
     virtual void keep_settings(const std::filesystem::path& file) = 0;  // copies the file of the app's settings
     virtual void keep_design(const std::filesystem::path& file) = 0;    // copies a part file that a person has changed
     virtual void offer(const std::filesystem::path& file) = 0;  // gives the person a copy of a file, to take away

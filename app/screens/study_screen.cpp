@@ -364,8 +364,8 @@ void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
 
 void draw_done(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::kThatWasAll);
-    paragraph(words::filled(run.on_tablet ? words::kAllOnTablet : words::kAllOnDisk,
-                            {run.code, std::to_string(run.progress.finished.size())}));
+    paragraph(words::filled(words::kAllSaved, {run.code, std::to_string(run.progress.finished.size())}));
+    if (!run.where.empty()) paragraph(run.where);
     gap(gui);
     if (forward(words::kNextParticipant, gui)) wishes.study = SamePerson{false};
     trials_button(gui, run, wishes);

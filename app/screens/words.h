@@ -638,8 +638,7 @@ inline constexpr const char* kThereAre = "Number of nodules: {}.";
 inline constexpr const char* kTimeOf = "{} of {}";
 inline constexpr const char* kTimeOver = "{} of {}: time is up";
 inline constexpr const char* kExperimenter = "Experimenter: trial {}, {}";
-inline constexpr const char* kAllOnTablet = "Participant {}: all trials are saved ({}), on this tablet or at the desk.";
-inline constexpr const char* kAllOnDisk = "Participant {}: all trials are saved ({}).";
+inline constexpr const char* kAllSaved = "Participant {}: all trials are saved ({}).";
 inline constexpr const char* kRestKept =
     "All trials that were finished before are saved. To continue, start the study again with the same participant "
     "code.";
@@ -663,9 +662,7 @@ inline constexpr const char* pageStopped = "Palpa has stopped: {}";
 inline constexpr const char* pageNotHere = "This study cannot be run here. {}";
 inline constexpr const char* pageLooking = "Looking for protocols";
 inline constexpr const char* pageRemoveAsk =
-    "Delete the exported trials from this tablet? Of those that are not at the desk, the exported file is then the "
-    "only "
-    "copy.";
+    "Delete the exported trials from this tablet? The exported file is then the only copy.";
 inline constexpr const char* pageNotLoaded = "the program cannot be loaded; is the desk reachable?";
 inline constexpr const char* pageAnswered = "The desk answered {} to {}.";
 inline constexpr const char* pageInTheApp = "included in the app";
@@ -717,6 +714,11 @@ inline constexpr const char* pageMayDelete =
 inline constexpr const char* pageExportIt = "NOT stored: export it";
 inline constexpr const char* pageStoredUnsent = "{} trial(s) stored on this tablet, not yet at the desk.";
 inline constexpr const char* pageStored = "{} trial(s) stored on this tablet.";
+inline constexpr const char* pageTheyAreHere = "They are on this tablet.";
+inline constexpr const char* pageTheyAreAtDesk = "They are at the desk.";
+inline constexpr const char* pageSomeAreHere =
+    "Some are on this tablet, the others at the desk or in an exported file.";
+inline constexpr const char* pageNoneIsHere = "They are at the desk or in an exported file.";
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
 inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";
 inline constexpr const char* pageSettingsNotStored = "Settings are not stored: the storage of this browser is full.";

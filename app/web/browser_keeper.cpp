@@ -24,9 +24,10 @@ EM_JS(void, palpa_trials_participant, (const char* code), { palpaTrials.setParti
 EM_JS(int, palpa_trials_next_run, (), { return palpaTrials.nextRun(); });
 EM_JS(int, palpa_trials_ready, (), { return palpaTrials.ready() ? 1 : 0; });
 EM_JS(void, palpa_trials_failed, (const char* message), { palpaTrials.tell(UTF8ToString(message)); });
-EM_JS(char*, palpa_trials_text, (int which), {
+EM_JS(char*, palpa_trials_text, (int which, const char* code), {
     const text = which === 0 ? palpaTrials.nextProblem() : which === 1 ? palpaTrials.note() : which === 2 ? palpaTrials.participant()
-               : which === 3 ? palpaTrials.settings() : which === 4 ? palpaTrials.protocol() : palpaTrials.restore();
+               : which === 3 ? palpaTrials.settings() : which === 4 ? palpaTrials.protocol()
+               : which === 5 ? palpaTrials.where(UTF8ToString(code)) : palpaTrials.restore();
     const size = lengthBytesUTF8(text) + 1;
     const copy = _malloc(size);
     stringToUTF8(text, copy, size);
@@ -45,10 +46,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum Text { kProblem, kNote, kParticipant, kSettings, kProtocol, kBroken };
+enum Text { kProblem, kNote, kParticipant, kSettings, kProtocol, kWhere, kBroken };
 
-std::string text_of(Text which) {
-    const std::unique_ptr<char, decltype(&std::free)> text(palpa_trials_text(which), &std::free);
+// `code`: of a participant, for kWhere.
+std::string text_of(Text which, const std::string& code = {}) {
+    const std::unique_ptr<char, decltype(&std::free)> text(palpa_trials_text(which, code.c_str()), &std::free);
     return text.get();
 }
 
@@ -138,6 +140,7 @@ int next_run_here() { return palpa_trials_next_run(); }
 bool BrowserKeeper::ready() const { return palpa_trials_ready() != 0; }
 std::string BrowserKeeper::problem() { return text_of(kProblem); }
 std::string BrowserKeeper::note() const { return text_of(kNote); }
+std::string BrowserKeeper::where(const std::string& code) const { return text_of(kWhere, code); }
 
 void BrowserKeeper::keep_settings(const std::filesystem::path& file) {
     try {

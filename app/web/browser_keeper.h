@@ -16,6 +16,7 @@ class BrowserKeeper : public session::TrialKeeper {
     bool ready() const override;
     std::string problem() override;
     std::string note() const override;
+    std::string where(const std::string& code) const override;
     void keep_settings(const std::filesystem::path& file) override;
     void keep_design(const std::filesystem::path& file) override;
     void offer(const std::filesystem::path& file) override;

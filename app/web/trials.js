@@ -277,6 +277,8 @@ const palpaTrials = (() => {
         const confirmed = answer.ok ? (await answer.json()).sha256 : '';
         if (confirmed !== trial.sha256) {
             lastWord = answer.ok ? palpaFilled(palpaWords.checksumMismatch, name) : palpaFilled(palpaWords.answered, answer.status, name);
+            if (answer.status === 503) await askDesk(); // it was started again, without a folder for logs
+            if (takesNone) lastWord = '';
             return kOfOneTrial.includes(answer.status);
         }
         // the desk has it: from here on only its name is kept
@@ -379,12 +381,16 @@ const palpaTrials = (() => {
         changed();
     };
 
+    const codeOf = (name) => name.split(/[-_]/)[1];
+    const deleted = () => recall('palpa-deleted').split(' '); // codes of participants, also of earlier pages
+
     // What is at the desk takes no room, and its name counts there.
     const removeExported = async () => {
         for (const {name, exported, sent} of [...trials.values()]) {
             if (!exported || sent) continue;
             await request('readwrite', (store) => store.delete(name));
             trials.delete(name);
+            remember('palpa-deleted', [...new Set([...deleted(), codeOf(name)])].join(' '));
         }
         noteNames();
         await saveAgain(); // there may be room now
@@ -397,6 +403,16 @@ const palpaTrials = (() => {
         if (trial.sent) return palpaWords.atDesk;
         if (!isOver(trial)) return palpaWords.inProgress;
         return (trial.finished && !trial.endedEarly ? palpaWords.waiting : palpaWords.interruptedWaiting) + (trial.exported ? palpaWords.exported : '');
+    };
+
+    // Where the trials of one participant are, for people.
+    const where = (code) => {
+        const all = known().filter((t) => codeOf(t.name) === code && isOver(t));
+        const sent = all.some((t) => t.sent);
+        const here = all.some((t) => !t.sent && !unsaved.has(t.name));
+        const exported = deleted().includes(code) || all.some((t) => !t.sent && unsaved.has(t.name)); // and nowhere else
+        if (here) return sent || exported ? palpaWords.someAreHere : palpaWords.theyAreHere;
+        return exported ? palpaWords.noneIsHere : sent ? palpaWords.theyAreAtDesk : '';
     };
 
     const state = () => {
@@ -420,7 +436,7 @@ const palpaTrials = (() => {
         ready: () => writing === 0 && inDanger() === 0,
         nextProblem: () => problems.shift() || '',
         note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.storedHere,
-        participant, nextRun,
+        participant, nextRun, where,
         settings: () => recall('palpa-settings'),
         keepSettings: (text) => { if (!remember('palpa-settings', text)) tell(palpaWords.settingsNotStored); },
         keepDesign, offer,

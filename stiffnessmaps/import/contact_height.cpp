@@ -1,7 +1,6 @@
 #include "stiffnessmaps/import/contact_height.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -44,37 +43,46 @@ struct ContactFit {
     double cost_N2 = 0.0;  // sum of squared differences of the forces
 };
 
-// F^(1/n) is a line over depth; its weights are those of equal errors of F.
-ContactFit contact_fit(const ProbedPoint& p, const Touch& touch, double threshold_N, double exponent) {
+// The rows up to ten thresholds, those in the air too: to leave out the low ones would draw the contact into the air.
+std::size_t rows_of_fit(const ProbedPoint& p, const Touch& touch, double threshold_N) {
     constexpr double kWindow = 10.0;
     constexpr std::size_t kFewestRows = 4;
-    double w = 0.0, wd = 0.0, wy = 0.0, wdd = 0.0, wdy = 0.0;
-    std::vector<std::array<double, 2>> rows;  // depth from the first row, force
-    for (std::size_t i = touch.first; i < p.force_N.size(); ++i) {
+    std::size_t end = touch.first;
+    while (end < p.force_N.size() &&
+           (end < touch.first + kFewestRows || p.force_N[end] - touch.air_N <= kWindow * threshold_N))
+        ++end;
+    return end;
+}
+
+// Least squares of a max(0, d - contact)^n: a follows from the contact.
+ContactFit fit_at(const ProbedPoint& p, const Touch& touch, std::size_t end, double contact_m, double exponent) {
+    double ww = 0.0, wf = 0.0, ff = 0.0;
+    for (std::size_t i = 0; i < end; ++i) {
         const double force_N = p.force_N[i] - touch.air_N;
-        if (force_N > kWindow * threshold_N && rows.size() >= kFewestRows) break;
-        if (force_N < 0.5 * threshold_N) continue;
-        const double d_m = p.depth_m[i] - p.depth_m[touch.first];
-        const double y = std::pow(force_N, 1.0 / exponent);
-        const double weight = std::pow(exponent * std::pow(force_N, 1.0 - 1.0 / exponent), 2);
-        rows.push_back({d_m, force_N});
-        w += weight;
-        wd += weight * d_m;
-        wy += weight * y;
-        wdd += weight * d_m * d_m;
-        wdy += weight * d_m * y;
+        const double wave = std::pow(std::max(0.0, p.depth_m[i] - contact_m), exponent);
+        ww += wave * wave;
+        wf += wave * force_N;
+        ff += force_N * force_N;
     }
-    ContactFit out;
-    const double slope = (w * wdy - wd * wy) / (w * wdd - wd * wd);
-    const double at_first = (wy - slope * wd) / w;
-    if (!(slope > 0.0) || !std::isfinite(slope)) return out;
-    const double contact_m = -at_first / slope;  // from the first row
-    for (const auto& [d_m, force_N] : rows) {
-        const double fitted_N = std::pow(std::max(0.0, slope * (d_m - contact_m)), exponent);
-        out.cost_N2 += (fitted_N - force_N) * (fitted_N - force_N);
+    if (!(ww > 0.0) || !(wf > 0.0)) return {contact_m, ff};
+    return {contact_m, std::max(0.0, ff - wf * wf / ww)};
+}
+
+ContactFit contact_fit(const ProbedPoint& p, const Touch& touch, double threshold_N, double exponent) {
+    const std::size_t end = rows_of_fit(p, touch, threshold_N);
+    double low_m = p.depth_m.front(), high_m = p.depth_m[touch.first];
+    ContactFit best{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
+    constexpr int kSteps = 24;
+    for (int round = 0; round < 3; ++round) {
+        const double step_m = (high_m - low_m) / kSteps;
+        for (int i = 0; i <= kSteps; ++i) {
+            const ContactFit one = fit_at(p, touch, end, low_m + i * step_m, exponent);
+            if (one.cost_N2 < best.cost_N2) best = one;
+        }
+        low_m = std::max(p.depth_m.front(), best.contact_m - step_m);
+        high_m = std::min(p.depth_m[touch.first], best.contact_m + step_m);
     }
-    out.contact_m = std::clamp(p.depth_m[touch.first] + contact_m, p.depth_m.front(), p.depth_m[touch.first]);
-    return out;
+    return best;
 }
 
 // Where the force crosses the threshold, for a place that tells no more.
@@ -107,8 +115,15 @@ ContactHeights find_contacts(const std::vector<ProbedPoint>& points, double thre
         return touches[i].first > 0 && touches[i].first < points[i].force_N.size();
     };
     ContactHeights out;
+    std::vector<double> touching;  // rows that tell the law
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (tells(i))
+            touching.push_back(static_cast<double>(rows_of_fit(points[i], touches[i], threshold_N) - touches[i].first));
+    }
+    constexpr double kFewestToTell = 4.0;
+    const bool law = median(std::move(touching)) >= kFewestToTell;
     double least_N2 = std::numeric_limits<double>::infinity();
-    for (const double exponent : {1.0, 1.25, 1.5, 1.75, 2.0}) {
+    for (const double exponent : law ? std::vector<double>{1.0, 1.25, 1.5, 1.75, 2.0} : std::vector<double>{1.5}) {
         double cost_N2 = 0.0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (tells(i)) cost_N2 += contact_fit(points[i], touches[i], threshold_N, exponent).cost_N2;
@@ -117,6 +132,9 @@ ContactHeights find_contacts(const std::vector<ProbedPoint>& points, double thre
         least_N2 = cost_N2;
         out.exponent = exponent;
     }
+    std::vector<double> in_air;
+    for (const Touch& touch : touches) in_air.push_back(static_cast<double>(touch.first));
+    out.rows_in_air = median(std::move(in_air));
     for (std::size_t i = 0; i < points.size(); ++i) {
         out.air_N.push_back(touches[i].air_N);
         double contact_m = std::numeric_limits<double>::quiet_NaN();

@@ -15,12 +15,14 @@ struct ContactHeights {
     std::vector<double> air_N;      // of each place: the median force of the rows in the air
     std::vector<double> contact_m;  // of each place: depth as it stands at which the force begins; NaN if it never does
     double exponent = 1.0;          // of force over depth there
+    double rows_in_air = 0.0;       // of the median place, before it touches for sure
 };
 
 // Finds where the forces begin. A place is surely in contact from the first of two rows on whose force, less that in the air,
-// exceeds the threshold. From there to ten thresholds force is taken as a (d - contact)^n, n one of 1, 1.25 ... 2 for all
-// places, by least squares; the contact lies where that is 0. Source of the law: 1 for a flat punch, 1.5 for a sphere, 2 for a
-// cone (Johnson, Contact Mechanics, chapters 3 to 5).
+// exceeds the threshold. Up to ten thresholds, and over the rows in the air, force is taken as 0 before the contact and as
+// a (d - contact)^n from there on, n one of 1, 1.25 ... 2 for all places, by least squares; 1.5 where fewer than four rows of a
+// place touch, which do not tell it. Source of the law: 1 for a flat punch, 1.5 for a sphere, 2 for a cone (Johnson, Contact
+// Mechanics, chapters 3 to 5).
 ContactHeights find_contacts(const std::vector<ProbedPoint>& points, double threshold_N);
 
 }  // namespace palpa::stiffnessmaps

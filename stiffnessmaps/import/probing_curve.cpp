@@ -99,11 +99,12 @@ void check_first_rows(const Probing& probing, const std::string& file) {
     }
     constexpr double kNear_m = 1e-4;
     const double begins_m = median(std::move(first_m));
-    if (begins_m <= std::max(kNear_m, 0.5 * median(std::move(step_m)))) return;
-    throw files::bad_input(file, "depth",
-                           "depths that begin at " + files::short_number(1e3 * begins_m) + " mm (median)",
-                           "0 at contact, or --contact given (depths and forces count from the surface as they stand) "
-                           "or --contact first-row (they count from the first row)");
+    if (std::abs(begins_m) <= std::max(kNear_m, 0.5 * median(std::move(step_m)))) return;
+    throw files::bad_input(
+        file, "depth", "depths that begin at " + files::short_number(1e3 * begins_m) + " mm (median)",
+        "0 at contact, or --contact given (depths and forces count from the surface as they stand), "
+        "--contact first-row (they count from the first row) or --contact threshold (they begin in the "
+        "air, and contact is where the force begins)");
 }
 
 // Returns the slopes (b, c) of the plane z = a + b x + c y through the contact heights.
@@ -164,6 +165,13 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
     if (contact == ContactStart::threshold) {
         threshold_N = options.contact_force_N.value_or(contact_threshold_N(probing.points));
         contacts = find_contacts(probing.points, threshold_N);
+        constexpr double kFewestInAir = 4.0;  // what three rows show may be tissue already
+        if (contacts.rows_in_air < kFewestInAir)
+            throw files::bad_input(
+                file, "contact",
+                files::short_number(contacts.rows_in_air) + " rows before the contact (median of the places)",
+                "four at least in the air, which show the force at rest and where contact begins; "
+                "or --contact first-row (depths and forces count from the first row) or given");
         offsets_N = start_at_contact(probing, contacts);
     }
     for (ProbedPoint& p : probing.points) {

@@ -349,6 +349,37 @@ TEST_CASE("probing: the contact is where the force begins, not where it stands o
     }
 }
 
+TEST_CASE("probing: noise does not draw the contact into the air, and a recording without air is refused") {
+    constexpr unsigned kSeed = 12;
+    CAPTURE(kSeed);
+    const auto text_of = [](double exponent, double noise_N, double air_mm) {
+        std::mt19937 random(kSeed);
+        std::normal_distribution<double> noise(0.0, 1.0);
+        std::string text = "x_mm,y_mm,z_mm,fz_N\n";
+        for (int p = 0; p < 120; ++p) {
+            for (double depth_mm = -air_mm; depth_mm < 3.0; depth_mm += 0.2) {
+                const double force_N = 0.3 * std::pow(std::max(0.0, depth_mm), exponent) + noise_N * noise(random);
+                text += std::to_string(3 * (p % 12)) + "," + std::to_string(3 * (p / 12)) + "," +
+                        number_text(-depth_mm) + "," + number_text(force_N) + "\n";
+            }
+        }
+        return text;
+    };
+    for (const auto& [exponent, noise_N] : {std::pair{1.5, 0.03}, {1.5, 0.08}, {1.0, 0.05}, {1.0, 0.08}, {2.0, 0.08}}) {
+        CAPTURE(exponent);
+        CAPTURE(noise_N);
+        const Map map = imported(text_of(exponent, noise_N, 1.0));
+        const Field field = make_field(map, {});
+        std::vector<double> force_N;
+        for (int p = 0; p < 120; ++p)
+            force_N.push_back(normal_force_N(field, place_at(field, {3e-3 * (p % 12), 3e-3 * (p / 12)}), 1.5e-3));
+        const double right_N = 0.3 * std::pow(1.5, exponent);
+        CHECK(std::abs(median(force_N) - right_N) < 0.5 * noise_N + 0.02 * right_N);
+        CHECK(map.depths_m.back() == close_to(3e-3).epsilon(0.12));
+    }
+    CHECK(contains(refusal(text_of(1.5, 0.003, -0.3)), "rows before the contact (median of the places)"));
+}
+
 TEST_CASE("probing: unequal depths that all points have are kept, so that an exported map comes back as it was") {
     std::string text = "x_mm,y_mm,depth_mm,fn_N\n";
     for (int p = 0; p < 9; ++p) {

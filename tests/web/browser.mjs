@@ -50,6 +50,7 @@ export async function openDesk() {
             const bytes = await body(request);
             if (desk.pairing && request.headers.authorization !== `Bearer ${desk.token}`) return answer(response, 401, {error: 'token'});
             const sha256 = crypto.createHash('sha256').update(bytes).digest('hex');
+            if (!desk.collects) return answer(response, 503, {error: 'no folder'});
             if (desk.too_large(decodeURIComponent(url.pathname))) return answer(response, 413, {error: 'too large'});
             if (desk.wrong) return answer(response, 200, {sha256: '0'.repeat(64)});
             if (request.headers['x-content-sha256'] !== sha256) return answer(response, 400, {error: 'hash'});

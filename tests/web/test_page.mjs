@@ -1,8 +1,10 @@
 // The page: size of the first visit, settings over a reload, a lost GL context, turning, density.
 
 import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
 import test from 'node:test';
-import {frames, pen, report, rows, started, touch, withPage} from './browser.mjs';
+import {frames, pen, report, root, rows, started, touch, withPage} from './browser.mjs';
 
 // What a person sees, pixel by pixel, as 'red,green,blue'.
 const coloursOf = async (page, clip) => page.evaluate(async (png) => {
@@ -43,6 +45,24 @@ test('settings outlive a reload', () => withPage({}, async (browser) => {
     await frames(page, 3);
     const settings = await page.evaluate(() => FS.readFile('/home/web_user/.config/palpa/settings.json', {encoding: 'utf8'}));
     assert.equal(JSON.parse(settings).left_handed, true);
+}));
+
+test('of the keys for screens, the help names those that open one in the browser', () => withPage({}, async ({page}) => {
+    const words = fs.readFileSync(path.join(root, 'app/screens/words.h'), 'utf8');
+    const named = (of) => new RegExp(`${of} = "([^"]*)"`).exec(words)[1].split(', ');
+    const seen = async () => {
+        await page.waitForTimeout(400);
+        const dialogs = await page.evaluate(() => [...document.querySelectorAll('dialog')].filter((dialog) => dialog.open).map(({id}) => id).join());
+        return dialogs + (await coloursOf(page, {x: 560, y: 60, width: 560, height: 600})).join(' ');
+    };
+    const opening = [];
+    for (const key of new Set([...named('kKeyScreens'), ...named('kKeyScreensWeb')])) {
+        const before = await seen();
+        await page.keyboard.press(key.toLowerCase());
+        if (await seen() !== before) opening.push(key);
+        await page.keyboard.press('Escape');
+    }
+    assert.deepEqual(opening.sort(), named('kKeyScreensWeb').sort());
 }));
 
 test('a lost GL context comes back with the same picture; samples go on meanwhile', () => withPage({}, async (browser) => {

@@ -127,6 +127,8 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     await tap(browser, 375, 195);                  // 4 of 1 to 7
     await key(page, 'Enter');
     await at(page, 'done');
+    const where_now = () => page.evaluate(() => palpaTrials.where('P7'));
+    assert.equal(await where_now(), 'They are on this tablet.');
     const kept = await stored(page);
     const seen = marksOf(kept);
     assert.deepEqual(Object.keys(seen).length, 4);
@@ -142,6 +144,7 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     await page.unroute('**/api/logs/**');
     await page.evaluate(() => palpaTrials.send());
     await until('all at the desk', async () => (await stored(page)).every((trial) => trial.sent && trial.text === ''));
+    assert.equal(await where_now(), 'They are at the desk.');
     const study = path.join(where.folder, 'study');
     const imported = palpaJson('study', 'import', ...uploads(where), '-o', study);
     assert.equal(imported.people_added, 1);
@@ -176,7 +179,7 @@ const certificate = ({folder}) => {
 test('the real desk by https: a wrong code pairs nothing, the right one does; the study comes from the desk after it', options, () => withDesk(async (browser, desk, where) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=short&participant=1');
-    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects four-displays paper softer tactile three-displays threshold, or of a desk/);
+    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects paper softer threshold, or of a desk/);
     await page.click('#leave');
     await page.waitForURL((url) => url.search === '');
     await started(page);

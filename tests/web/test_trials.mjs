@@ -42,7 +42,16 @@ test('a finished trial is in the storage before the next begins, whole, and outl
 
 test('paired: trials go to the desk; one with another hash is kept and sent again; a wrong code pairs nothing', () => withPage({quiet: true}, async (browser, desk) => {
     const {page} = browser;
+    const asked = [];
+    page.on('request', (request) => { if (request.url().endsWith('/api/pair')) asked.push(request.postData()); });
+    await page.evaluate(() => palpaTrials.open());
+    for (const empty of ['', '  ']) {
+        await page.fill('#code', empty);
+        await page.click('#pair-now'); // says nothing
+    }
+    await page.click('#close-trials');
     await pairByDialog(page, '111111');
+    assert.deepEqual(asked, ['{"code":"111111"}']);
     await finishTrial(browser);
     await until('stored', async () => (await stored(page)).length === 1);
     assert.equal(desk.logs.size, 0);
@@ -105,6 +114,8 @@ test('exported trials are deleted, those at the desk keep their names and count;
     await until('kept', async () => (await stored(page)).filter((t) => t.finished).length === 2);
     const words = () => page.evaluate(() => palpaTrials.state().trials.map((t) => t.words));
     assert.ok((await words()).includes('interrupted, waiting'), String(await words()));
+    const where = () => page.evaluate(() => palpaTrials.where(palpaTrials.participant()));
+    assert.match(await where(), /^Some are on this tablet/);
     await page.evaluate(() => palpaTrials.open());
     await page.click('#export');
     await until('exported', async () => (await words()).includes('interrupted, waiting, exported'));
@@ -112,6 +123,7 @@ test('exported trials are deleted, those at the desk keep their names and count;
     await page.click('#remove');
     await until('deleted', async () => (await stored(page)).filter((t) => t.finished).length === 1);
     assert.match((await page.evaluate(() => palpaTrials.state().lines)).join(' '), /^0 waiting, 1 at the desk\./);
+    assert.equal(await where(), 'They are at the desk or in an exported file.');
 }));
 
 test('a full storage is said at once, the next trial waits, export saves it and lets it begin', () => withPage({}, async (browser) => {

@@ -58,6 +58,24 @@ test('a desk that needs no code is asked for none, and one that takes no logs go
     assert.equal(await page.isVisible('#pair'), false);
 }));
 
+test('a desk that is started again without a folder for logs is not called one that takes them', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    desk.pairing = false;
+    await page.reload();
+    await started(page);
+    await page.evaluate(() => palpaTrials.open());
+    assert.match(await page.textContent('#trials-state'), /accepts logs without a code/);
+    await page.click('#close-trials');
+    desk.collects = false;
+    await finishTrial(browser);
+    await page.evaluate(() => palpaTrials.open());
+    await until('said', async () => /^1 waiting, 0 at the desk\. This desk does not accept logs/.test(await page.textContent('#trials-state')));
+    assert.doesNotMatch(await page.textContent('#trials-state'), /accepts logs without|503/);
+    desk.collects = true;
+    await page.evaluate(() => window.dispatchEvent(new Event('online')));
+    await until('at the desk', () => desk.logs.size === 1);
+}));
+
 test('a browser that asks whether the page may stay, and gets no answer, starts all the same', () => withPage({quiet: true}, async ({page}) => {
     await page.addInitScript(() => { StorageManager.prototype.persist = () => new Promise(() => {}); });
     await page.reload();

@@ -25,6 +25,7 @@ class BusyKeeper : public session::TrialKeeper {
     bool ready() const override { return !busy; }
     std::string problem() override { return {}; }
     std::string note() const override { return {}; }
+    std::string where(const std::string& code) const override { return "The trials of " + code + " are here."; }
     void keep_settings(const std::filesystem::path&) override {}
     void keep_design(const std::filesystem::path& file) override { designs.push_back(file); }
     void offer(const std::filesystem::path& file) override { offered.push_back(file); }

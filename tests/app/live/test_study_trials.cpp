@@ -164,6 +164,19 @@ TEST_CASE("live: finishing a study's trial that nobody has touched asks to press
     }
 }
 
+TEST_CASE("live: who has finished is told where the trials are, if a keeper knows") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("repeats": 1)");
+    desk.keeper.busy = false;
+    desk.app.keeper = &desk.keeper;
+    REQUIRE(trial_goes_on(desk.run()));
+    CHECK(desk.run().where.empty());
+    desk.press();
+    desk.finish();
+    REQUIRE(at<step::Done>(desk.run()));
+    CHECK(desk.run().where == "The trials of 01 are here.");
+}
+
 TEST_CASE("live: closing a study's trial that was touched asks first, with or without marks") {
     const TemporaryFolder folder;
     StudyDesk desk(folder, R"("repeats": 2)");

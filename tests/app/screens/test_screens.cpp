@@ -11,6 +11,7 @@
 #include "app/screens/frame.h"
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/words.h"
 #include "app/study/study_run.h"
 #include "tests/app/screens/screen_checks.h"
 #include "tests/close_to.h"
@@ -91,6 +92,9 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     menu_experimenter.view.menu_page = MenuPage::experimenter;
     Screens help{trial.notices};
     help.view.help = true;
+    Screens help_in_browser{trial.notices};
+    help_in_browser.notices.keeps_trials = true;
+    help_in_browser.view.help = true;
     Screens guided{trial.notices, Palpating{false, true}};
     Screens cost{trial.notices};
     cost.view.cost = true;
@@ -165,6 +169,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(session, menu_settings, c, "menu-settings", screen);
         check_case(session, menu_experimenter, c, "menu-experimenter", screen);
         check_case(session, help, c, "help", screen);
+        check_case(session, help_in_browser, c, "help-browser", screen);
         check_case(session, guided, c, "guided", screen);
         check_case(session, history, c, "history", screen);
         check_case(done, guided_result, c, "guided-result", screen);
@@ -241,6 +246,7 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         }
         // on a tablet there is more to do between people, and a step may have to wait
         run->on_tablet = true;
+        run->where = words::pageSomeAreHere;
         run->warnings = {
             "Trial sub-07_task-palpation_run-03 is not kept: the storage of this browser is full. Menu, Trials, Export "
             "saves it "
@@ -254,6 +260,7 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         check_case(session, screens, c, "study-tablet-keeping", screen);
         run->keeping_since_s.reset();
         run->on_tablet = false;
+        run->where.clear();
         run->step = step::Device{false, true};
         check_case(session, screens, c, "study-device-gone", screen);
         run->warnings.clear();
