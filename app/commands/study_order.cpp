@@ -30,7 +30,7 @@ files::Json trial_json(const study::Protocol& protocol, const study::PlannedTria
                      {"repeat", trial.repeat + 1}};
     const study::TaskKind task = study::task_of(protocol, trial.condition);
     json["task"] = name_of(task);
-    if (!compares(task) || !protocol.conditions[trial.condition].scene.empty()) {
+    if (!protocol.conditions[trial.condition].scene.empty()) {  // others show no tissue that could be turned
         json["map_rotation_deg"] = trial.rotate_deg;
         json["map_flip"] = trial.flip;
     }
@@ -84,7 +84,10 @@ void print_trial(const study::Protocol& protocol, const study::PlannedTrial& tri
         std::printf("  %s, reference %s\n", level.c_str(), trial.reference_first ? "first" : "second");
         return;
     }
-    std::printf("  turned %3d deg%s\n", trial.rotate_deg, trial.flip ? ", flipped" : "");
+    if (protocol.conditions[trial.condition].scene.empty())
+        std::printf("\n");
+    else
+        std::printf("  turned %3d deg%s\n", trial.rotate_deg, trial.flip ? ", flipped" : "");
 }
 
 void print_imbalance(const study::Protocol& protocol, const std::vector<study::PlannedParticipant>& people) {
