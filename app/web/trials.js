@@ -381,7 +381,7 @@ const palpaTrials = (() => {
         changed();
     };
 
-    const codeOf = (name) => name.split(/[-_]/)[1];
+    const codeOf = (name) => (/^sub-([0-9A-Za-z]+)_task-(?!answers_)/.exec(name) || ['', ''])[1]; // of who did a trial
     const deleted = () => recall('palpa-deleted').split(' '); // codes of participants, also of earlier pages
 
     // What is at the desk takes no room, and its name counts there.
