@@ -64,6 +64,10 @@ void leave_study(study::Withdrawal how, StudyRun& run) {
     if (kept(run, [&] { study::withdraw(run.directory, run.code, how); })) enter(step::Withdrawn{}, run);
 }
 
+std::string words_of_replaced(const std::string& code, const std::string& successor) {
+    return code + " was replaced by " + successor + "; enter that code.";
+}
+
 bool left_elsewhere(StudyRun& run) {
     auto how = study::Withdrawal::none;
     std::string successor;
@@ -77,7 +81,9 @@ bool left_elsewhere(StudyRun& run) {
         return true;
     }
     if (successor.empty()) return false;
-    stop_study(run.code + " was replaced by " + successor + ": further trials would not be analysed.", run);
+    const std::string code = run.code;
+    same_person(false, run);
+    run.note = words_of_replaced(code, successor);
     return true;
 }
 

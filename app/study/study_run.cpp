@@ -296,7 +296,7 @@ void enter_code(const std::string& code, StudyRun& run) {
     }
     if (!successor.empty()) {
         run.lock.reset();
-        return refuse_code(code + " was replaced by " + successor + "; enter that code.", run);
+        return refuse_code(words_of_replaced(code, successor), run);
     }
     run.code = code;
     if (!kept(run, [&] { find_comparison(run); })) return;

@@ -89,8 +89,9 @@ void answer_consent(bool given, StudyRun& run);
 void want_to_leave(StudyRun& run);
 void leave_study(study::Withdrawal how, StudyRun& run);
 // True, and the participant has stopped, if the experimenter noted a withdrawal or a replacement meanwhile (palpa study
-// withdraw, replace), or if that cannot be read.
+// withdraw, replace), or if that cannot be read. After a replacement the next code is asked for.
 bool left_elsewhere(StudyRun& run);
+std::string words_of_replaced(const std::string& code, const std::string& successor);
 
 // For these files alone. kept() runs `work`; an exception, such as a problem with the disk, stops the study with a
 // message before a trial is lost.

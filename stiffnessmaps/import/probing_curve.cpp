@@ -189,7 +189,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
                    "4 deviations of the force in the air, or 1 % of the greatest: above it a place touches for sure",
                    "--contact-force-N", options.contact_force_N.has_value());
         add_choice(source, "contact_exponent", contacts.exponent,
-                   "of force over depth just above that force, for all places; by it the curve is led back to 0 N", "");
+                   "of force over depth from the contact to ten times that force, for all places", "");
     }
     if (probing.depth_from_z && options.remove_tilt && !probing.points.empty()) remove_tilt(probing, source);
 }

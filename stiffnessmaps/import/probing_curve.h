@@ -14,7 +14,8 @@ struct ProbedPoint;
 //   contact   first_row: the robot had found the surface; depth and force count from the first row.
 //             threshold: depth counts from where the force begins, force from that in the air (contact_height.h).
 //             given: depths and forces count from the surface as they stand; rows that are not below it are left out.
-//             Depths that begin far below 0 are refused unless the options choose between first_row and given
+//             Depths that begin far from 0 are refused unless the options choose one of the three. Throws InputError
+//             for threshold where places have too few rows in the air
 //   tilt      if depth comes from z: fits a plane through the contact heights (least squares) and takes depth and force
 //             along its normal
 // Places with fewer than two depths left are removed. Throws InputError.

@@ -547,21 +547,19 @@ TEST_CASE("study run: a withdrawal that the experimenter notes meanwhile ends th
 TEST_CASE("study run: who was replaced does not go on, now or later") {
     const TemporaryFolder folder;
     const auto log = folder / "log";
-    {
-        StudyRun run = open_study_run(find_protocol(folder), log, "01");
-        answer_questions(run);
-        begin_step(run);
-        REQUIRE(at<step::Trial>(run));
-        add_replacement(log, {"01", "02", "felt unwell"});
-        run_trial(run);
-        REQUIRE(at<step::Stopped>(run));
-        CHECK(contains(std::get<step::Stopped>(run.step).why, "01 was replaced by 02"));
-        CHECK(run.progress.finished.size() == 1);
-    }
+    StudyRun run = open_study_run(find_protocol(folder), log, "01");
+    answer_questions(run);
+    begin_step(run);
+    REQUIRE(at<step::Trial>(run));
+    add_replacement(log, {"01", "02", "felt unwell"});
+    run_trial(run);
+    const std::string replaced = "01 was replaced by 02; enter that code.";
+    CHECK(at<step::Code>(run));
+    CHECK(run.note == replaced);
+    CHECK(finished_trials(log, "01").size() == 1);
     CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "01"); }), "who was replaced"));
-    StudyRun run = open_study_run(find_protocol(folder), log, "");
     enter_code("01", run);
-    CHECK(run.note == "01 was replaced by 02; enter that code.");
+    CHECK(run.note == replaced);
     enter_code("02", run);
     CHECK(run.note.empty());
 }
