@@ -38,7 +38,15 @@ std::array<double, 2> loaded_m(const Part& part, const PartLoad& load, std::size
     return is_max(*load.face) ? std::array{high_m, high_m} : std::array{low_m, low_m};
 }
 
-BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m) {
+}  // namespace
+
+double load_place_m(const Part& part, const PartLoad& load) {
+    return middle(loaded_m(part, load, static_cast<std::size_t>(*part.axis), filled_box(part.voxels)));
+}
+
+namespace {
+
+BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<double>& place_m) {
     if (!part.axis) return {0, 0, true, "the part names no axis"};
     if (largest_axis(load.direction) == *part.axis) {
         const bool straight = std::abs(load.direction[static_cast<std::size_t>(*part.axis)]) > 1.0 - 1e-6;
@@ -51,7 +59,7 @@ BeamSpan beam_span(const Part& part, const PartLoad& load, const std::optional<d
     const auto axis = static_cast<std::size_t>(*part.axis);
     const FilledBox box = filled_box(part.voxels);
     const double h = part.voxels.frame.pitch_m;
-    const double load_m = load_place_m ? *load_place_m : middle(loaded_m(part, load, axis, box));
+    const double load_m = place_m ? *place_m : load_place_m(part, load);
     double low_m = box.low[axis] * h, high_m = box.high[axis] * h;  // of the clamp
     if (support.face) {
         if (axis_of(*support.face) != *part.axis) return unclamped;
@@ -89,8 +97,8 @@ std::string doubt_of(const Part& part, const PartLoad& load, int bends, double l
 
 }  // namespace
 
-PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m) {
-    const BeamSpan span = beam_span(part, load, load_place_m);
+PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& place_m) {
+    const BeamSpan span = beam_span(part, load, place_m);
     PartBeam out;
     out.why_not = span.why_not;
     if (!out.why_not.empty()) return out;
@@ -105,8 +113,8 @@ PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<dou
     out.length_m = span.high_m - span.low_m;
     for (const BeamPiece& piece : out.pieces) out.height_m = std::max(out.height_m, piece.height_m);
     out.across = std::abs(load.direction[static_cast<std::size_t>(bends)]);
-    if (!load_place_m) out.doubt = doubt_of(part, load, bends, out.length_m);
-    if (!load_place_m && out.doubt.empty())
+    if (!place_m) out.doubt = doubt_of(part, load, bends, out.length_m);
+    if (!place_m && out.doubt.empty())
         out.doubt = section_doubt(part, load, {*part.axis, bends, span.low_m, span.high_m});
     return out;
 }

@@ -20,14 +20,17 @@ struct PartBeam {
     std::string doubt;    // why its answer cannot be trusted all the same; "" if it can
 };
 
+// The middle of the part's stretch of its axis over which the load is spread; the part must name its axis.
+double load_place_m(const Part& part, const PartLoad& load);
+
 // Beams bend in the direction of the load's largest component. The clamp is one support that holds x, y and z: a side
-// square to the axis, or a box, whose side towards the load counts. load_place_m: along the axis, instead of the load's.
+// square to the axis, or a box, whose side towards the load counts. place_m: along the axis, instead of load_place_m().
 // Doubts a load that is oblique across the section by more than kMostOblique, and one that is spread along the beam by more
 // than kMostSpread of its distance from the clamp to either side. A load spread by a share k is (1 + k^3 / 5) times as far
 // from where it was as the force in its middle, on a uniform beam.
 inline constexpr double kMostOblique = 0.1;
 inline constexpr double kMostSpread = 0.4;
-PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m = {});
+PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& place_m = {});
 
 // What the load's part along the axis says against small displacements, "" for nothing or for a part that is no beam: pressed
 // by a share k of its buckling load, a beam bends 1 / (1 - k) times as far sideways, pulled 1 / (1 + k) times (Timoshenko, Gere,

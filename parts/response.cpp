@@ -67,7 +67,7 @@ std::optional<PartLoad> load_at(const Part& part, const PartLoad& load, double s
     return out;
 }
 
-// Stations from the clamp to the free end, `n` of them and the load's own. Of a part that is no beam only the latter.
+// Stations from the clamp to the free end, `n` of them, the end's and the load's own. Of a part that is no beam only the latter.
 std::vector<Station> stations_of(const Part& part, const PartLoad& load, const PartBeam& beam, int n) {
     if (!beam.why_not.empty()) return {{0.0, load, true}};
     const auto axis = static_cast<std::size_t>(*part.axis);
@@ -77,12 +77,17 @@ std::vector<Station> stations_of(const Part& part, const PartLoad& load, const P
     const double clamp_m = beam.clamped_low ? beam.pieces.front().from_m : beam.pieces.back().to_m;
     const double free_m = h * (beam.clamped_low ? box.high[axis] : box.low[axis]);
     std::vector<Station> out{{named_m, load, true}};
+    const auto add = [&](double at_m) {
+        if (const auto there = load_at(part, load, at_m)) out.push_back({at_m, *there, false});
+    };
     for (int i = 0; i < n; ++i) {
         // the middle of a voxel, so that the patch does not stand on an edge
         const double at_m = round_trip(clamp_m + (free_m - clamp_m) * (i + 0.5) / n - 0.5 * h, h) + 0.5 * h;
-        if (std::abs(at_m - named_m) < 0.25 * std::abs(free_m - clamp_m) / n) continue;
-        if (const auto there = load_at(part, load, at_m)) out.push_back({at_m, *there, false});
+        if (std::abs(at_m - named_m) >= 0.25 * std::abs(free_m - clamp_m) / n) add(at_m);
     }
+    // the last voxel, up to which the part can be pressed
+    const double end_m = free_m + (beam.clamped_low ? -0.5 : 0.5) * h;
+    if (std::abs(end_m - named_m) > h) add(end_m);
     std::sort(out.begin(), out.end(), [](const Station& a, const Station& b) { return a.at_m < b.at_m; });
     return out;
 }
@@ -134,13 +139,13 @@ PartBeam cut_at(const PartBeam& beam, double end_m) {
 }
 
 void draw_beam(const Part& part, const PartLoad& load, const ResponseRequest& request, const BeamShape& shape,
-               std::size_t station, Response& out) {
+               double load_m, std::size_t station, Response& out) {
     for (int j = 0; j < out.nodes[1]; ++j) {
         for (int i = 0; i < out.nodes[0]; ++i) {
-            double x_m = out.station_m[station];
+            double x_m = load_m;
             if (request.view[0] == *part.axis) x_m = i * out.spacing_m;
             if (request.view[1] == *part.axis) x_m = j * out.spacing_m;
-            const double w = shape.at(out.station_m[station], x_m);
+            const double w = shape.at(load_m, x_m);
             for (std::size_t k = 0; k < 2; ++k)
                 out.field[station][node_of(out, i, j) + k] =
                     static_cast<float>(w * load.direction[static_cast<std::size_t>(request.view[k])]);
@@ -155,19 +160,19 @@ Response beam_response(const Part& part, const PartLoad& load, const ResponseReq
     const std::vector<Station> stations = stations_of(part, load, named, kBeamStations);
     Response out;
     start_response(part, stations, request, out);
-    const double end_m = named.clamped_low ? out.station_m.back() : out.station_m.front();
+    const double end_m = load_place_m(part, named.clamped_low ? stations.back().load : stations.front().load);
     const PartBeam beam = beam_of(part, load, end_m);
     if (!beam.why_not.empty()) throw files::bad_input(part.file, "axis", beam.why_not, "a beam to its free end");
     for (std::size_t i = 0; i < stations.size(); ++i) {
         BeamShape shape{beam, request.method, 1.0};
-        const double at_m = out.station_m[i];
+        const double at_m = load_place_m(part, stations[i].load);
         if (request.method == Method::paper) {
             const PartBeam cut = cut_at(beam, at_m);
             const double own = shape.at(at_m, at_m);
             if (own > 0.0) shape.scale = beam.across * beam.across / (paper_spring_N_per_m(cut) * own);
         }
         out.compliance_m_per_N.push_back(shape.at(at_m, at_m));
-        draw_beam(part, load, request, shape, i, out);
+        draw_beam(part, load, request, shape, at_m, i, out);
     }
     return out;
 }

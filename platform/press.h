@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "platform/pressure.h"
 #include "platform/sample.h"
 
 namespace palpa::platform {
@@ -18,6 +19,8 @@ struct Press {
 
 struct Presses {
     std::vector<Press> held;
+    PressureWatch
+        pressure;  // of all presses, also those that a panel owns: any press tells whether its device measures
 };
 
 // Appends `sample` to `out` if it may reach the tissue. `down_owner` decides for the whole press and is read only for

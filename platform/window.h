@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/pressure.h"
 #include "platform/sample.h"
 #include "platform/window_event.h"
 
@@ -74,6 +75,9 @@ class Window {
     // changes. It takes only keys for whose key_down the event filter returned false. While one of its keys is held, a
     // sample comes each 1/240 s.
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
+
+    // What the pens and fingers have sent so far, in presses on panels too.
+    const PressureWatch& pressure() const;
 
     // True if the last poll() met any event: a sample, or anything else that may change the look of panels.
     bool stirred() const;

@@ -42,6 +42,17 @@ struct Counters {
     std::int64_t unmeasured = 0;        // not Contact::measured
 };
 
+static_assert(sizeof(Counters) == 14 * sizeof(std::int64_t));  // all are added
+inline Counters& operator+=(Counters& sum, const Counters& other) {
+    for (std::int64_t Counters::*one :
+         {&Counters::samples, &Counters::steps, &Counters::dropped_steps, &Counters::skipped_stations,
+          &Counters::skipped_slides, &Counters::levels_clamped, &Counters::without_level, &Counters::distrusted,
+          &Counters::palms, &Counters::saturated, &Counters::inexact, &Counters::off_tissue, &Counters::not_numbers,
+          &Counters::unmeasured})
+        sum.*one += other.*one;
+    return sum;
+}
+
 // Greatest values since start().
 struct Extremes {
     double force_N = 0.0;

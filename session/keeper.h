@@ -21,8 +21,9 @@ class TrialKeeper {
     virtual void keep_answers(const std::filesystem::path& directory, const std::string& code) = 0;
     virtual void participant(const std::string& code) = 0;  // says who is here now; "" for nobody
     virtual bool ready() const = 0;                         // true if everything that was handed over is stored
-    virtual std::string problem() = 0;     // why something could not be stored, for people; each problem once, then ""
-    virtual std::string note() const = 0;  // what is kept, for people
+    virtual std::string problem() = 0;  // why something could not be stored, for people; each problem once, then ""
+    virtual std::string solved() = 0;   // a problem that is none any more, since it is stored now; each once, then ""
+    virtual std::string note() const = 0;                          // what is kept, for people
     virtual std::string where(const std::string& code) const = 0;  // where a participant's trials are; "": not known
     virtual void keep_settings(const std::filesystem::path& file) = 0;  // copies the file of the app's settings
     virtual void keep_design(const std::filesystem::path& file) = 0;    // copies a part file that a person has changed

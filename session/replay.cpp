@@ -94,9 +94,12 @@ ReplayResult replay(const platform::Trace& trace, Session& session, double until
     return result;
 }
 
-files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames,
-                     const scene::Meter& latency) {
-    const scene::Counters& counters = state.counters;
+files::Json run_json(const Session& session, std::int64_t frames, const scene::Meter& latency) {
+    const scene::Scene& scene = session.scene;
+    const scene::Plan& plan = *session.plan;
+    const scene::State& state = session.state;
+    const Totals sum = session.before + state;
+    const scene::Counters& counters = sum.counters;
     files::Json json;
     json["scene"] = scene.name;
     json["samples"] = counters.samples;
@@ -106,9 +109,9 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
     json["skipped_stations"] = counters.skipped_stations;
     json["skipped_slides"] = counters.skipped_slides;
     json["latency_ms"] = {{"p50", 1e-6 * latency.quantile_ns(0.5)}, {"p99", 1e-6 * latency.quantile_ns(0.99)}};
-    json["max_force_N"] = state.extremes.force_N;
-    json["max_depth_mm"] = 1e3 * state.extremes.depth_m;
-    json["max_lag_mm"] = 1e3 * state.extremes.lag_m;
+    json["max_force_N"] = sum.extremes.force_N;
+    json["max_depth_mm"] = 1e3 * sum.extremes.depth_m;
+    json["max_lag_mm"] = 1e3 * sum.extremes.lag_m;
     json["stages"] = files::Json::array();
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
         for (const scene::Stage& stage : *stages) {
@@ -129,18 +132,17 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
                       {"not_numbers", counters.not_numbers},
                       {"distrusted", counters.distrusted},
                       {"palms", counters.palms},
-                      {"backwards", state.timeline.backwards},
-                      {"late", state.timeline.late},
-                      {"duplicate_times", state.timeline.duplicates},
-                      {"clock_jumps", state.timeline.clock_jumps}};
+                      {"backwards", sum.backwards},
+                      {"late", sum.late},
+                      {"duplicate_times", sum.duplicates},
+                      {"clock_jumps", sum.clock_jumps}};
     if (const auto switched = scene::switch_events(plan.tissue, state.tissue)) json["switch_events"] = *switched;
     json["notes"] = scene::notes_of(scene, plan);
     return json;
 }
 
 files::Json result_json(const Session& session, const ReplayResult& result) {
-    files::Json json =
-        run_json(session.scene, *session.plan, session.state, result.display.frames, result.display.latency);
+    files::Json json = run_json(session, result.display.frames, result.display.latency);
     json["lag_over_nodules_mm"] = files::Json::object();
     for (const NodulePass& pass : result.over)
         json["lag_over_nodules_mm"][pass.id] = files::number_or_null(1e3 * pass.lag_m);

@@ -61,9 +61,8 @@ void begin_replay(SessionFiles files, const platform::TraceInfo& info, std::opti
 // the state's timeline. The files stay open until close_files().
 ReplayResult replay(const platform::Trace& trace, Session& session, double until_s = 1e300);
 
-// Returns the keys that every run reports (docs/formats.md).
-files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames,
-                     const scene::Meter& latency);
+// Returns the keys that every run reports, of all its trials (docs/formats.md).
+files::Json run_json(const Session& session, std::int64_t frames, const scene::Meter& latency);
 
 // Returns the keys of run_json() for a replay, and beside them the lag over and beside the nodules, and the trials.
 files::Json result_json(const Session& session, const ReplayResult& result);

@@ -219,9 +219,23 @@ scene::ScreenArea screen_of(const platform::TraceInfo& info) {
     return area;
 }
 
+Totals operator+(const Totals& before, const scene::State& trial) {
+    Totals sum = before;
+    sum.counters += trial.counters;
+    sum.extremes.force_N = std::max(before.extremes.force_N, trial.extremes.force_N);
+    sum.extremes.depth_m = std::max(before.extremes.depth_m, trial.extremes.depth_m);
+    sum.extremes.lag_m = std::max(before.extremes.lag_m, trial.extremes.lag_m);
+    sum.backwards += trial.timeline.backwards;
+    sum.late += trial.timeline.late;
+    sum.duplicates += trial.timeline.duplicates;
+    sum.clock_jumps += trial.timeline.clock_jumps;
+    return sum;
+}
+
 void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, const scene::ScreenArea& screen,
                    Session& session) {
     scene::State state = scene::start(scene, *plan, screen);
+    session.before = session.before + session.state;
     Trial trial = make_trial(*plan, session.trial.mode);
     session.scene = std::move(scene);
     session.plan = std::move(plan);
@@ -231,6 +245,7 @@ void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, 
 
 void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, TrialMode mode, Session& session) {
     ++session.trials;
+    session.before = session.before + session.state;
     session.state = scene::start(session.scene, *session.plan, screen_of(info));
     session.state.time_every = 16;
     session.trial = make_trial(*session.plan, mode);

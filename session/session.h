@@ -29,11 +29,20 @@ struct SessionFiles {
     int first_run = 1;              // lower run numbers are taken, elsewhere
 };
 
+// What the trials before the present one add to the figures of a run.
+struct Totals {
+    scene::Counters counters;
+    scene::Extremes extremes;  // without the times, which are a trial's own
+    std::int64_t backwards = 0, late = 0, duplicates = 0, clock_jumps = 0;  // as in platform::Timeline
+};
+Totals operator+(const Totals& before, const scene::State& trial);
+
 struct Session {
     scene::Scene scene;
     // Never null. Shared, so that trials do not copy it: the plan of a linear tissue can take hundreds of megabytes.
     std::shared_ptr<const scene::Plan> plan = std::make_shared<const scene::Plan>();
     scene::State state;
+    Totals before;  // of the trials that are over
     Trial trial;
     std::string device;  // for the log
     int trials = 0;      // that have begun

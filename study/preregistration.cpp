@@ -114,7 +114,11 @@ std::string primary_text(const Protocol& protocol) {
                                 : "conditions " + sides + ", differences of the same people where they did both";
     const bool t = one.test == PrimaryTest::t;
     return std::string(name_of(one.quantity)) + ", " + who + "; two-sided " +
-           (t ? "t test over participants (Student's of differences, Welch's between groups)"
+           (t ? one.quantity == Quantity::ppv
+                    ? "t test over participants of the pooled ratios (standard error by the jackknife; Welch's degrees "
+                      "of "
+                      "freedom between groups)"
+                    : "t test over participants (Student's of differences, Welch's between groups)"
               : "permutation test over participants (signs of differences, or groups)") +
            ", not corrected";
 }

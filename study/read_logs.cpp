@@ -131,7 +131,11 @@ class Subject {
         for (const BrokenChoice& one : broken) log_broken(one, plan);
         std::vector<std::string> of_other_orders;
         auto& notes = same_orders ? out_.notes : of_other_orders;
-        const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, notes);
+        auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, notes);
+        for (const Replacement& one : out_.replacements) {
+            if (one.participant != code_) continue;
+            for (Progress& row : rows) row.replaced_by = one.replaced_by;
+        }
         out_.progress.insert(out_.progress.end(), rows.begin(), rows.end());
     }
 

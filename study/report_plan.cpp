@@ -9,13 +9,14 @@
 namespace palpa::study {
 namespace {
 
-// Sums over all participants, in the order in which conditions appear.
+// Sums over all participants who were not replaced, in the order in which conditions appear.
 std::vector<Progress> progress_by_condition(const std::vector<Progress>& rows) {
     std::vector<Progress> sums;
     std::map<std::string, std::size_t> place;
     for (const Progress& row : rows) {
         const auto [it, fresh] = place.emplace(row.condition, sums.size());
         if (fresh) sums.push_back({"", "", row.condition});
+        if (!row.replaced_by.empty()) continue;  // the place counts once, for who has it now
         Progress& sum = sums[it->second];
         sum.planned += row.planned;
         sum.finished += row.finished;
@@ -47,6 +48,7 @@ void add_plan_json(const Report& report, files::Json& json) {
     json["plan"] = files::Json::array();
     for (const Progress& row : report.progress) {
         files::Json entry{{"participant", row.participant}, {"group", row.group}};
+        entry["replaced_by"] = row.replaced_by.empty() ? files::Json(nullptr) : files::Json(row.replaced_by);
         entry.update(progress_json(row));
         json["plan"].push_back(std::move(entry));
     }
@@ -65,10 +67,11 @@ void add_plan_json(const Report& report, files::Json& json) {
 
 std::vector<ReportTable> plan_tables(const Report& report) {
     const std::vector<std::string> counts{"planned", "finished", "interrupted", "missing", "excluded"};
-    ReportTable sums{"plan", "Logs against the plan: tests by condition", {"condition"}, {}};
+    ReportTable sums{
+        "plan", "Logs against the plan: tests by condition, without participants who were replaced", {"condition"}, {}};
     ReportTable all{"plan_participants",
                     "Logs against the plan: tests by participant and condition",
-                    {"participant", "group", "condition"},
+                    {"participant", "group", "condition", "replaced_by"},
                     {}};
     ReportTable left_out{"exclusions", "Left out by the experimenter", {"participant", "trial", "reason"}, {}};
     for (ReportTable* table : {&sums, &all}) table->columns.insert(table->columns.end(), counts.begin(), counts.end());
@@ -80,7 +83,8 @@ std::vector<ReportTable> plan_tables(const Report& report) {
     for (const Progress& row : progress_by_condition(report.progress))
         add(sums, {row.condition}, row, missing_of(report.progress, row.condition));
     for (const Progress& row : report.progress)
-        add(all, {row.participant, row.group, row.condition}, row, row.missing());
+        add(all, {row.participant, row.group, row.condition, row.replaced_by.empty() ? kNone : row.replaced_by}, row,
+            row.missing());
     for (const Replacement& one : report.replacements) {
         left_out.rows.push_back(
             {one.participant, "all", "dropped out, replaced by " + one.replaced_by + ": " + one.reason});
@@ -94,6 +98,7 @@ std::string plan_summary(const Report& report) {
     Progress sum;
     int missing = 0;
     for (const Progress& row : report.progress) {
+        if (!row.replaced_by.empty()) continue;
         sum.planned += row.planned;
         sum.finished += row.finished;
         missing += row.missing();

@@ -233,7 +233,10 @@ std::string report_markdown(const Report& report) {
     out += plan_summary(report);
     out +=
         "\nTests are over participants: design within = Student's t of each person's difference a - b, design "
-        "between = Welch's t of two groups; p_permutation = exact permutation of signs, or of groups (drawn above " +
+        "between = Welch's t of two groups; of positive predictive value it is the difference of the pooled ratios sum "
+        "k / "
+        "sum n, with the standard error of the jackknife over participants in these t tests; p_permutation = exact "
+        "permutation of signs, or of groups (drawn above " +
         whole(kMostExactPeople) + " people). p_holm = corrected by Holm " + kHolmFamilies + ". " +
         (report.groups.empty() ? "" : "Interactions of PPV are not tested. ") +
         (report.primary ? "The primary comparison is not corrected. " : "No protocol states a primary comparison. ") +

@@ -45,13 +45,18 @@ DeviceState rest_under(const DeviceModel& model, const Actuation& actuation) {
     return state;
 }
 
-// What the drives give, which are told the recorded actuations.
+// What the drives give, which are told the recorded actuations and lengths, and the sense of friction in that.
 std::vector<RecordedTick> behind(std::vector<RecordedTick> ticks, double left, double between_s) {
-    if (!(left > 0.0)) return ticks;
     for (std::size_t i = 1; i < ticks.size(); ++i) {
-        const double lacks = std::pow(left, (ticks[i].time_s - ticks[i - 1].time_s) / between_s);
-        for (std::size_t j = 0; j < kMostActuators; ++j)
-            ticks[i].actuation[j] += lacks * (ticks[i - 1].actuation[j] - ticks[i].actuation[j]);
+        const RecordedTick& before = ticks[i - 1];
+        RecordedTick& tick = ticks[i];
+        const double apart_s = tick.time_s - before.time_s;
+        const double lacks = left > 0.0 ? std::pow(left, apart_s / between_s) : 0.0;
+        for (std::size_t j = 0; j < kMostActuators; ++j) {
+            tick.actuation[j] += lacks * (before.actuation[j] - tick.actuation[j]);
+            tick.length[j] += lacks * (before.length[j] - tick.length[j]);
+            tick.sense[j] = friction_sense((before.length[j] - tick.length[j]) / apart_s);
+        }
     }
     return ticks;
 }
@@ -161,15 +166,17 @@ Misfit misfit_of(const Eigen::VectorXd& model_N, const std::vector<RecordedTick>
     return out;
 }
 
-Eigen::MatrixXd slopes(const SoftDevice& device, const Presses& presses, const Senses& sense, const Parameters& p,
+// `sense` is that of the model, or null where it is recorded.
+Eigen::MatrixXd slopes(const SoftDevice& device, const Presses& presses, const Senses* sense, const Parameters& p,
                        const Eigen::VectorXd& at_N) {
-    const Parameters step(1e-3, 1e-3, 1e-2, 1e-2);
+    const Parameters step(2e-2, 2e-3, 2e-2, 4e-2);  // large against the 5e-6 N by which equilibria scatter
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(at_N.size(), p.size());
     for (Eigen::Index k = 0; k < (presses.lag ? 4 : 3); ++k) {
         Parameters there = p;
         there(k) += step(k);
-        const Eigen::VectorXd there_N =
-            forces_N(model_with(device, there), used_ticks(presses, there(3)), sense, there, nullptr);
+        const std::vector<RecordedTick> ticks = used_ticks(presses, there(3));
+        const Eigen::VectorXd there_N = forces_N(model_with(device, there), ticks,
+                                                 sense != nullptr ? *sense : recorded_senses(ticks), there, nullptr);
         for (Eigen::Index i = 1; i < at_N.size(); ++i) {
             const double slope = (there_N(i) - at_N(i)) / step(k);
             if (std::isfinite(slope)) out(i, k) = slope;
@@ -193,7 +200,6 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
     for (const SoftActuator& a : model.actuators) {
         if (has_lengths && a.kind == ActuatorKind::cable) length.push_back(table.column(a.name + "_mm"));
     }
-    std::vector<double> before_m(length.size());
     std::vector<RecordedTick> out;
     while (table.next()) {
         RecordedTick tick;
@@ -206,14 +212,11 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
         if (std::abs(tick.force_N) > kMostForce_N)
             table.fail(force, "a force of a finger, at most " + files::short_number(kMostForce_N) + " N");
         for (std::size_t j = 0; j < actuator.size(); ++j) tick.actuation[j] = table.finite_number(actuator[j]);
-        tick.has_sense = !length.empty();
+        tick.has_lengths = !length.empty();
         std::size_t cable = 0;
-        for (std::size_t j = 0; tick.has_sense && j < actuator.size(); ++j) {
-            if (model.actuators[j].kind != ActuatorKind::cable) continue;
-            const double now_m = 1e-3 * table.finite_number(length[cable]);
-            if (!out.empty())
-                tick.sense[j] = friction_sense((before_m[cable] - now_m) / (tick.time_s - out.back().time_s));
-            before_m[cable++] = now_m;
+        for (std::size_t j = 0; tick.has_lengths && j < actuator.size(); ++j) {
+            if (model.actuators[j].kind == ActuatorKind::cable)
+                tick.length[j] = 1e-3 * table.finite_number(length[cable++]);
         }
         out.push_back(tick);
     }
@@ -230,13 +233,13 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     Parameters p = Parameters::Zero();
     const double known_lag_s = device.fit.lag_s;  // stays as it is where none is fitted
     if (!options.lag && known_lag_s > 0.0) p(3) = std::exp(-presses.between_s / known_lag_s);
-    const bool has_sense = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_sense; });
-    Senses sense = recorded_senses(ticks);
+    const bool recorded = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_lengths; });
+    Senses sense = recorded_senses(ticks);  // none, where no lengths are recorded
     for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
         if (options.progress) options.progress(static_cast<double>(out.rounds - 1) / kMostRounds);
         const DeviceModel model = model_with(device, p);
         ticks = used_ticks(presses, p(3));
-        if (!has_sense) sense = modelled_senses(model, ticks, p, sense);
+        sense = recorded ? recorded_senses(ticks) : modelled_senses(model, ticks, p, sense);
         const Eigen::VectorXd at_N = forces_N(model, ticks, sense, p, nullptr);
         const Misfit misfit = misfit_of(at_N, ticks);
         if (misfit.known < kFewestTicks)
@@ -245,7 +248,7 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
         if (out.rounds == 1) out.rms_before_N = misfit.rms_N;
         out.rms_after_N = misfit.rms_N;
         // a little of each parameter's own size keeps apart what the presses cannot tell apart
-        const Eigen::MatrixXd J = slopes(device, presses, sense, p, at_N);
+        const Eigen::MatrixXd J = slopes(device, presses, recorded ? nullptr : &sense, p, at_N);
         Eigen::Matrix4d A = J.transpose() * J;
         A.diagonal() *= 1.0 + 1e-6;
         A.diagonal().array() += 1e-12;

@@ -12,16 +12,17 @@
 namespace palpa::tangible {
 
 // PRESSES.tsv: columns time_s, depth_mm (as the sensor read it), force_N (of the finger), and for each actuator NAME_N or
-// NAME_Pa (what its drive was told). Where NAME_mm is there for every cable (how much of it was wound out), its motion, and so
-// the sense of friction, is taken from there, and not from the model. The tables that `palpa tangible characterise -o` writes
-// are such files; other columns are allowed.
+// NAME_Pa (what its drive was told). Where NAME_mm is there for every cable (the length of it that its drive was told to let
+// out), the cable's motion, and so the sense of friction, is taken from there, behind by the drives' lag as the forces are, and
+// not from the model. The tables that `palpa tangible characterise -o` writes are such files; other columns are allowed.
 struct RecordedTick {
     double time_s = 0.0;
     double depth_m = 0.0;
     double force_N = 0.0;
     Actuation actuation{};
-    Actuation sense{};  // of friction, by cable, -1 to 1
-    bool has_sense = false;
+    Lengths length{};  // of the cables, m
+    bool has_lengths = false;
+    Actuation sense{};  // of friction, by cable, -1 to 1; fit_presses() finds it from the lengths
 };
 // Throws InputError with file, line and column.
 std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const DeviceModel& model);

@@ -53,7 +53,6 @@ void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
         for (const platform::Sample& sample : samples) take(sample, app);
         return;
     }
-    for (const platform::Sample& sample : samples) platform::watch(sample, app.pressure);
     if (auto* checking = std::get_if<CheckingDevices>(&app.doing)) {
         for (const platform::Sample& sample : samples) {
             observe(sample, *checking->check);
@@ -245,6 +244,7 @@ struct Live::Impl {
     void take_samples(double wait_s) {
         samples.clear();
         window->poll(wait_s, samples);  // 1. read
+        if (!app.trace) app.pressure = window->pressure();
         if (gui->take_stop()) stop_devices(app);
         if (window->stirred() || !samples.empty()) stirred_s = window->now_s();
         if (window->uncovered()) app.view.on_screen.content = 0;

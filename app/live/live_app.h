@@ -77,12 +77,12 @@ struct App {
     std::optional<scene::Scene> unprepared;  // its tissue is computed once a window can show the progress
     std::optional<platform::Trace> trace;    // replayed
     std::size_t next_row = 0;
-    double trace_shift_s = 0.0;     // window's clock - trace's clock
-    std::int64_t frames = 0;        // number of frames drawn
-    double drawn_s = 0.0;           // window's clock when the last frame was drawn
-    double devices_noted_s = -1e9;  // window's clock when the devices were last listed
-    bool save_waits = false;        // a picture of the next frame is to be saved
-    platform::PressureWatch pressure;
+    double trace_shift_s = 0.0;        // window's clock - trace's clock
+    std::int64_t frames = 0;           // number of frames drawn
+    double drawn_s = 0.0;              // window's clock when the last frame was drawn
+    double devices_noted_s = -1e9;     // window's clock when the devices were last listed
+    bool save_waits = false;           // a picture of the next frame is to be saved
+    platform::PressureWatch pressure;  // what pens and fingers have sent; nothing while a trace is replayed
     platform::HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     Course course;

@@ -63,15 +63,17 @@ bool may_begin(const App& app) {
     return is_device_here(app) && run.pen != PenVerdict::no_pressure && run.devices_note.empty();
 }
 
-// Why a trial says nothing about the person: its device is gone, nothing was touched in its time, or its time went by while
-// the app was out of sight or the computer slept.
-enum class Interruption { device_gone, untouched, overslept };
+// Why a trial says nothing about the person: its device is gone, its pen turned out to measure no pressure, nothing was
+// touched in its time, or its time went by while the app was out of sight or the computer slept.
+enum class Interruption { device_gone, no_pressure, untouched, overslept };
 constexpr double kOverslept_s = 2.0;  // longer than any frame
 
 // Interrupts such a trial. It is repeated.
 void interrupt_study_trial(Interruption why_interrupted, platform::Window& window, App& app) {
     if (why_interrupted == Interruption::device_gone)
         session::note_event("device_gone", now_of(app, window), app.session);
+    if (why_interrupted == Interruption::no_pressure)
+        session::note_event("no_pressure", now_of(app, window), app.session);
     session::note_time(now_of(app, window), app.session);  // without touches no sample has told the time
     app.asked.reset();
     StudyRun& run = *study_of(app.doing);
@@ -147,7 +149,8 @@ void finish_study_trial(platform::Window& window, App& app) {
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
     if (due_trial(run).practice && !due_compares(run)) {
-        give_feedback(session::debrief(*app.session.plan, app.session.trial).score, run);
+        const study::Score score = session::debrief(*app.session.plan, app.session.trial).score;
+        give_feedback(score.true_positives, score.false_negatives, score.false_positives, run);
     } else {
         trial_finished(run);
     }
@@ -195,6 +198,8 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
         device->here = stopped || may_begin(app);
     }
     if (!trial_goes_on(run)) return;
+    note_pen(app, run);
+    if (run.pen == PenVerdict::no_pressure) return interrupt_study_trial(Interruption::no_pressure, window, app);
     if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
     if (!is_device_here(app) || devices_failed(window.now_s(), app))
         return interrupt_study_trial(Interruption::device_gone, window, app);

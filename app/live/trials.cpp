@@ -67,7 +67,7 @@ double now_of(const App& app, const platform::Window& window) { return window.no
 
 files::Json result_of(const App& app) {
     const session::Session& s = app.session;
-    files::Json result = session::run_json(s.scene, *s.plan, s.state, app.frames, app.view.times.latency);
+    files::Json result = session::run_json(s, app.frames, app.view.times.latency);
     const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
     result["frame_cpu_ms"] = {{"p50", ms(app.view.times.cpu, 0.5)}, {"p99", ms(app.view.times.cpu, 0.99)}};
     result["frame_gl_ms"] = {{"p50", ms(app.view.times.gl, 0.5)}, {"p99", ms(app.view.times.gl, 0.99)}};
@@ -158,6 +158,9 @@ void begin_when_kept(platform::Window& window, const Gui& gui, App& app) {
     if (app.keeper == nullptr) return;
     for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
         app.notices.problems.push_back(problem);
+    }
+    for (std::string solved = app.keeper->solved(); !solved.empty(); solved = app.keeper->solved()) {
+        std::erase(app.notices.problems, solved);
     }
     if (waits_for_keeper(app) && app.keeper->ready()) begin_anew(window, gui, app);
 }

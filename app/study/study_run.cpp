@@ -350,9 +350,8 @@ void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false
 
 void repeat_untouched(StudyRun& run) { enter(step::Device{false, false, false, true}, run); }
 
-void give_feedback(const study::Score& score, StudyRun& run) {
-    enter(step::Feedback{score.true_positives, score.true_positives + score.false_negatives, score.false_positives},
-          run);
+void give_feedback(int found, int missed, int false_marks, StudyRun& run) {
+    enter(step::Feedback{found, found + missed, false_marks}, run);
 }
 
 void trial_finished(StudyRun& run) {
@@ -395,7 +394,9 @@ void submit_typed(const study::TypedAnswers& typed, StudyRun& run) {
         run.unkept_runs.push_back(files);
         study::write_typed_trial(files, label, trial.practice, trial.seed, due_nodules(run), typed);
     });
-    if (good) finish_due(run);
+    if (!good) return;
+    if (trial.practice) return give_feedback(found_of(typed), missed_of(typed), typed.false_marks, run);
+    finish_due(run);
 }
 
 void stop_study(const std::string& why, StudyRun& run) {

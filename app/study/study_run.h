@@ -75,10 +75,11 @@ void enter_code(const std::string& code, StudyRun& run);
 void same_person(bool is, StudyRun& run);
 void submit_answers(const std::vector<std::string>& answers, StudyRun& run);  // of questions and ratings
 void begin_step(StudyRun& run);                                               // see BeginStep
-void wait_for_device(bool left, StudyRun& run);                // instead of a trial; left: the device went during it
-void repeat_untouched(StudyRun& run);                          // the trial's time was over before anything was touched
-void trial_finished(StudyRun& run);                            // the trial is on the disk
-void give_feedback(const study::Score& score, StudyRun& run);  // the same for practice, which tells what was found
+void wait_for_device(bool left, StudyRun& run);  // instead of a trial; left: the device went during it
+void repeat_untouched(StudyRun& run);            // the trial's time was over before anything was touched
+void trial_finished(StudyRun& run);              // the trial is on the disk
+// The same for practice, which tells what was found.
+void give_feedback(int found, int missed, int false_marks, StudyRun& run);
 void interval_presented(StudyRun& run);
 void choose_softer(bool first, double now_s, StudyRun& run);
 void submit_typed(const study::TypedAnswers& typed, StudyRun& run);

@@ -27,7 +27,7 @@ EM_JS(void, palpa_trials_failed, (const char* message), { palpaTrials.tell(UTF8T
 EM_JS(char*, palpa_trials_text, (int which, const char* code), {
     const text = which === 0 ? palpaTrials.nextProblem() : which === 1 ? palpaTrials.note() : which === 2 ? palpaTrials.participant()
                : which === 3 ? palpaTrials.settings() : which === 4 ? palpaTrials.protocol()
-               : which === 5 ? palpaTrials.where(UTF8ToString(code)) : palpaTrials.restore();
+               : which === 5 ? palpaTrials.where(UTF8ToString(code)) : which === 6 ? palpaTrials.nextSolved() : palpaTrials.restore();
     const size = lengthBytesUTF8(text) + 1;
     const copy = _malloc(size);
     stringToUTF8(text, copy, size);
@@ -46,7 +46,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum Text { kProblem, kNote, kParticipant, kSettings, kProtocol, kWhere, kBroken };
+enum Text { kProblem, kNote, kParticipant, kSettings, kProtocol, kWhere, kSolved, kBroken };
 
 // `code`: of a participant, for kWhere.
 std::string text_of(Text which, const std::string& code = {}) {
@@ -139,6 +139,7 @@ int next_run_here() { return palpa_trials_next_run(); }
 
 bool BrowserKeeper::ready() const { return palpa_trials_ready() != 0; }
 std::string BrowserKeeper::problem() { return text_of(kProblem); }
+std::string BrowserKeeper::solved() { return text_of(kSolved); }
 std::string BrowserKeeper::note() const { return text_of(kNote); }
 std::string BrowserKeeper::where(const std::string& code) const { return text_of(kWhere, code); }
 

@@ -15,6 +15,7 @@ class BrowserKeeper : public session::TrialKeeper {
     void participant(const std::string& code) override;
     bool ready() const override;
     std::string problem() override;
+    std::string solved() override;
     std::string note() const override;
     std::string where(const std::string& code) const override;
     void keep_settings(const std::filesystem::path& file) override;

@@ -13,12 +13,13 @@ const palpaTrials = (() => {
     const kOfOneTrial = [400, 411, 413, 415, 422]; // answers that tell nothing about other trials
     const trials = new Map(); // by name, without texts
     const problems = [];
+    const solved = [];         // texts of problems that are none any more
+    const told = new Map();    // what was told of a trial that is not stored, by its name; '' for the one that is going on
     const unsaved = new Map(); // what the storage would not take, by name: {trial, files}; tried again, also once exported
     const restoring = new Set(); // parts of an earlier page that are not a trial yet
     let studyFiles = [];         // of earlier pages
     let designs = [];            // of earlier pages
     let parts = [];
-    let partsTold = false;
     let database = null;
     let writing = 0;
     let sending = false;
@@ -49,6 +50,18 @@ const palpaTrials = (() => {
     const tell = (text) => {
         problems.push(text);
         changed();
+    };
+    const tellOf = (name, text) => {
+        if (told.get(name) === text) return;
+        told.set(name, text);
+        tell(text);
+    };
+    // The trial is stored, or at the desk, or in a file.
+    const solve = (...names) => {
+        for (const name of names) {
+            if (told.has(name)) solved.push(told.get(name));
+            told.delete(name);
+        }
     };
 
     const hex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
@@ -192,6 +205,7 @@ const palpaTrials = (() => {
             if (isOver(trial)) partsStore.delete(IDBKeyRange.bound([trial.name], [trial.name, []]));
         }, ['trials', 'study', 'parts']);
         unsaved.delete(trial.name);
+        solve(trial.name, '');
         note(trial);
         noteNames();
     };
@@ -221,7 +235,7 @@ const palpaTrials = (() => {
         } catch (error) {
             unsaved.set(name, {trial, files});
             const full = error && error.name === 'QuotaExceededError';
-            tell(palpaFilled(palpaWords.notStored, name, full ? palpaWords.storageFull : error.message));
+            tellOf(name, palpaFilled(palpaWords.notStored, name, full ? palpaWords.storageFull : error.message));
         } finally {
             --writing;
         }
@@ -233,8 +247,7 @@ const palpaTrials = (() => {
     const putPart = (name, path, offset, text) => {
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
         request('readwrite', (store) => { store.put({name, path, offset, text}); }, ['parts'], 'relaxed').catch((error) => {
-            if (!partsTold) tell(palpaFilled(palpaWords.partNotStored, error.message));
-            partsTold = true;
+            if (!told.has('')) tellOf('', palpaFilled(palpaWords.partNotStored, error.message));
         });
     };
 
@@ -289,6 +302,7 @@ const palpaTrials = (() => {
         } else {
             await request('readwrite', (store) => store.put(sent));
         }
+        solve(name, '');
         note(sent);
         noteNames();
         return true;
@@ -374,6 +388,7 @@ const palpaTrials = (() => {
             download(`palpa-trials${title}-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files: [...files.values()]}, null, 1) + '\n');
         }
         for (const {trial} of unsaved.values()) trial.exported = true;
+        solve(...unsaved.keys());
         for (const trial of kept.filter(isOver)) {
             note({...trial, exported: true});
             await request('readwrite', (store) => store.put({...trial, exported: true})).catch(() => {}); // full: known until the page is left
@@ -435,6 +450,7 @@ const palpaTrials = (() => {
         start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
         ready: () => writing === 0 && inDanger() === 0,
         nextProblem: () => problems.shift() || '',
+        nextSolved: () => solved.shift() || '',
         note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.storedHere,
         participant, nextRun, where,
         settings: () => recall('palpa-settings'),

@@ -83,6 +83,8 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     impl_->uncovered = std::exchange(pointers.uncovered, false);
 }
 
+const PressureWatch& Window::pressure() const { return impl_->pointers.presses.pressure; }
+
 bool Window::stirred() const { return impl_->stirred; }
 
 bool Window::uncovered() const { return impl_->uncovered; }

@@ -65,6 +65,8 @@ void Window::poll(double, std::vector<Sample>& out) {
     impl_->stirred = std::exchange(pointers.stirred, false);
 }
 
+const PressureWatch& Window::pressure() const { return impl_->pointers.presses.pressure; }
+
 bool Window::stirred() const { return impl_->stirred; }
 bool Window::uncovered() const { return false; }  // the browser keeps what was drawn
 

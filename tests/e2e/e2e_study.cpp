@@ -55,16 +55,15 @@ class Script {
     }
     // A press that strokes from left to right in the middle of the tissue and stays there if it is not lifted.
     void stroke(double seconds, bool lift) {
-        row("pen", 0, "hover", 600, 400, 0.0);
-        wait(0.05);
-        row("pen", 0, "down", 600, 400, 0.2);
-        const int n = static_cast<int>(seconds / 0.004);
-        for (int i = 0; i <= n; ++i) {
-            wait(0.004);
-            row("pen", 0, "move", 600 + 300.0 * i / n, 400, 0.6 + 0.0001 * i);
-        }
+        press(600, 400, 0.6, 0.0001, 300.0, seconds);
         if (lift) row("pen", 0, "up", 900, 400, 0.0);
         wait(0.2);
+    }
+    // A press on one place, with a pressure that rises by `rise` in each sample.
+    void press_at(double x_px, double y_px, double pressure, double rise) {
+        press(x_px, y_px, pressure, rise, 0.0, 0.7);
+        row("pen", 0, "up", x_px, y_px, 0.0);
+        wait(0.3);
     }
     double close() {
         out_.close();
@@ -73,6 +72,16 @@ class Script {
     double now_s() const { return t_s_; }
 
   private:
+    void press(double x_px, double y_px, double pressure, double rise, double way_px, double seconds) {
+        row("pen", 0, "hover", x_px, y_px, 0.0);
+        wait(0.05);
+        row("pen", 0, "down", x_px, y_px, 0.2);
+        const int n = static_cast<int>(seconds / 0.004);
+        for (int i = 0; i <= n; ++i) {
+            wait(0.004);
+            row("pen", 0, "move", x_px + way_px * i / n, y_px, pressure + rise * i);
+        }
+    }
     void row(const char* kind, int id, const char* phase, double x_px, double y_px, double pressure) {
         out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << pressure
              << '\n';
@@ -261,6 +270,32 @@ TEST_CASE("missing: a pen's trial does not begin before there is a pen") {
           0);
     hand.join();
     CHECK(text_of(first).find("\tfinish\t") != std::string::npos);
+    CHECK(read_json(folder / "out.json")["finished"] == 1);
+}
+
+TEST_CASE("pressure: a pen that measures nothing is refused, and a press on the panel itself shows that it measures") {
+    const TemporaryFolder folder;
+    write_protocol(folder);
+    const auto first = folder / "log/sub-07/beh/sub-07_task-palpation_run-01_events.tsv";
+    const auto now = folder / "log/sub-07/now.json";
+    Script script(folder / "script.tsv");
+    script.wait(3.0);
+    script.key(kEnter);  // begin; nobody has tried the pen
+    script.wait(first);
+    script.press_at(600, 400, 0.5, 0.0);  // it always sends the same
+    script.wait(now, "\"device\"");
+    script.key(kEnter);                     // not now
+    script.press_at(640, 500, 0.3, 0.002);  // in the middle of the panel
+    script.key(kEnter);
+    script.wait(1.0);
+    script.stroke(0.4, true);
+    script.key(kF);
+    const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(script.close() + 6.0));
+    CHECK(run_program(folder, arguments, now, [&] { CHECK(play_script(folder) == 0); }) == 0);
+    CHECK(text_of(first).find("\tno_pressure\t") != std::string::npos);
+    CHECK(text_of(first).find("\tinterrupted\t") != std::string::npos);
+    CHECK(text_of(folder / "log/sub-07/beh/sub-07_task-palpation_run-02_events.tsv").find("\tfinish\t") !=
+          std::string::npos);
     CHECK(read_json(folder / "out.json")["finished"] == 1);
 }
 

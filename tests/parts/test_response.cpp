@@ -57,6 +57,19 @@ TEST_CASE("response: it grows along the axis, and between stations its error is 
           close_to(compliance_at(cells, place_of(cells, 12e-3))).epsilon(0.05));
 }
 
+TEST_CASE("response: a part that is pressed at its very end is as soft as there") {
+    const Part part = parsed(slender());
+    PartLoad end = part.loads[1];
+    end.at_m[0] = 19.75e-3;  // of 20 mm, in voxels of 0.5 mm
+    for (const Method method : {Method::timoshenko, Method::voxels}) {
+        CAPTURE(name_of(method));
+        const Response response = response_of(part, part.loads[1], {method, {}, 1e-8, {0, 2}});
+        const double solved_m = stiffness_of(part, end, {{method}, {}, 1e-8}).front().displacement_m;
+        CHECK(compliance_at(response, place_of(response, end.at_m[0])) ==
+              close_to(solved_m / end.force_N).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("response: the picture moves with the load, and its middle at the load is the compliance") {
     const Part part = parsed(slender());
     for (const Method method : {Method::timoshenko, Method::voxels}) {

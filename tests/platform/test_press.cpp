@@ -44,6 +44,38 @@ TEST_CASE("press: on a panel only hovering passes") {
     CHECK(admitted(all, PressOwner::panel) == std::vector<Phase>{Phase::hover, Phase::hover});
 }
 
+TEST_CASE("press: pressure is watched wherever the press is, on a panel and after a cancel too") {
+    for (const PressOwner owner : {PressOwner::tissue, PressOwner::panel, PressOwner::nobody}) {
+        for (const double rise : {0.0, 0.001}) {
+            Presses presses;
+            std::vector<Sample> out;
+            Sample sample = at(Phase::down);
+            for (int i = 0; i < 100; ++i) {
+                sample.t_host_s = 0.01 * i;
+                sample.pressure = 0.5 + rise * i;
+                palpa::platform::admit(sample, owner, presses, out);
+                sample.phase = Phase::move;
+            }
+            const auto kind = palpa::platform::pressure_kind(presses.pressure, sample.tool);
+            CHECK(kind ==
+                  (rise > 0.0 ? palpa::platform::PressureKind::varies : palpa::platform::PressureKind::constant));
+        }
+    }
+    Presses lifted;  // the time between two presses is no touch
+    std::vector<Sample> out;
+    Sample sample = at(Phase::down);
+    for (int press = 0; press < 2; ++press) {
+        for (int i = 0; i < 20; ++i) {
+            sample.t_host_s = 100.0 * press + 0.001 * i;
+            sample.phase = i == 0 ? Phase::down : Phase::move;
+            sample.pressure = 0.5;
+            palpa::platform::admit(sample, PressOwner::panel, lifted, out);
+        }
+        palpa::platform::cancel_all(sample.t_host_s, lifted, out);
+    }
+    CHECK(palpa::platform::pressure_kind(lifted.pressure, sample.tool) == palpa::platform::PressureKind::unknown);
+}
+
 TEST_CASE("press: moves and ups without a down are dropped") {
     CHECK(admitted({Phase::move, Phase::up}, PressOwner::tissue).empty());
 }

@@ -4,6 +4,7 @@
 #include "app/scene_choices.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "session/replay.h"
 #include "session/session.h"
 #include "session/trial.h"
 #include "study/read_logs.h"
@@ -306,6 +307,27 @@ TEST_CASE("session: a second trial gets its own run and its own trace; a full di
     CHECK_FALSE(person.session.log);
     CHECK(files_good(person.session));
     CHECK(person.session.trial.began == false);
+}
+
+TEST_CASE("session: what a run reports covers all its trials, and not the last one alone") {
+    Trainee person;
+    person.stroke(0.0, 0.0, 0.8);
+    const Json first = run_json(person.session, 0, {});
+    CHECK(first["max_force_N"].get<double>() > 0.0);
+    CHECK(first["samples"] == 19);
+    begin_trial({}, person.info, TrialMode::test, person.session);
+    const Json begun = run_json(person.session, 0, {});
+    CHECK(begun["max_force_N"] == first["max_force_N"]);
+    CHECK(begun["max_depth_mm"] == first["max_depth_mm"]);
+    CHECK(begun["samples"] == first["samples"]);
+    Scene scene = person.session.scene;
+    change_tissue(std::move(scene), person.session.plan, screen_of(person.info), person.session);
+    begin_trial({}, person.info, TrialMode::test, person.session);
+    person.stroke(0.0, 0.0, 0.4);
+    const Json last = run_json(person.session, 0, {});
+    CHECK(last["max_force_N"] == first["max_force_N"]);
+    CHECK(last["samples"] == 38);
+    CHECK(last["steps"].get<std::int64_t>() > first["steps"].get<std::int64_t>());
 }
 
 TEST_CASE("trial: the clock starts at the first touch and stands still in a pause") {

@@ -124,7 +124,10 @@ TEST_CASE("replacements: who replaces a dropout gets that place in the plan, and
     CHECK(seen.notes.empty());
     CHECK(seen.trials.size() == 8);
     CHECK(seen.excluded_trials == 1);
-    CHECK(contains(report_markdown(make_report(seen, {})), "| 02 | all | dropped out, replaced by 21: felt unwell |"));
+    const std::string report = report_markdown(make_report(seen, {}));
+    CHECK(contains(report, "| 02 | all | dropped out, replaced by 21: felt unwell |"));
+    CHECK(contains(report, "Of 8 planned tests 8 are finished and 0 are missing"));  // a place counts once
+    for (const Progress& row : seen.progress) CHECK(row.replaced_by == (row.participant == "02" ? "21" : ""));
     // every condition stands at every position equally often among those who finished
     std::vector<PlannedParticipant> people;
     for (const char* code : {"01", "21", "03", "04"}) people.push_back(progress_of(log, protocol, code).plan);

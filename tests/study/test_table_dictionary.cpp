@@ -3,8 +3,10 @@
 
 #include "study/observations.h"
 #include "study/table_dictionary.h"
+#include "tests/error_message.h"
 
 using namespace palpa::study;
+using palpa::test::contains;
 
 namespace {
 
@@ -74,6 +76,9 @@ TEST_CASE("table dictionary: a table's own meaning of a column comes before the 
     const auto text = [](const char* table, const char* column) {
         return dictionary_of({table, "", {column}, {}})[column]["Description"].get<std::string>();
     };
+    CHECK(contains(text("pairs", "difference"), "mean over participants"));
+    CHECK(contains(text("ppv_pairs", "difference"), "pooled ratios"));  // which a mean of each person's is not
+    CHECK(contains(text("ppv_pairs", "t"), "jackknife"));
     CHECK(text("psychometric", "sd") != text("trials", "sd"));
     CHECK(text("groups", "a") != text("pairs", "a"));
     CHECK(text("pairs", "none") == "none");

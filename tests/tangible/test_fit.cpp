@@ -71,6 +71,17 @@ TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     CHECK(kept.fit.modulus_factor == close_to(1.1).epsilon(0.005));
 }
 
+TEST_CASE("fit: friction of cables that lag has the sense of what they do, not of what they are told") {
+    PlantOptions plant = small_plant(0.9);
+    plant.friction_share = 0.05;
+    plant.lag_s = 0.03;
+    const FitResult result = fit_presses(small_strip()->device, recorded(plant), {true, 24, {}});
+    CHECK(result.settled);
+    CHECK(result.fit.modulus_factor == close_to(0.9).epsilon(0.002));
+    CHECK(result.fit.friction_share == close_to(0.05).epsilon(0.02));
+    CHECK(result.fit.lag_s == close_to(0.03).epsilon(0.03));
+}
+
 TEST_CASE("fit: a lag that is not seen has no standard error") {
     const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.1), 2), {true, 24, {}});
     CHECK(result.fit.lag_s == 0.0);

@@ -45,6 +45,26 @@ test('parts: an edit is answered at once, and its cells are computed while the p
     assert.ok(await cached(page) > before, 'the cells of the edited brush were computed');
 }));
 
+test('parts: Ctrl+Y does again what U undid', () => withPage({}, async (browser) => {
+    const {page} = browser;
+    const done = () => page.evaluate(() => {
+        const folder = '/home/web_user/.local/share/palpa/parts';
+        const [name] = FS.analyzePath(folder).exists ? FS.readdir(folder).filter((one) => one.endsWith('.json')) : [];
+        return name ? JSON.parse(FS.readFile(`${folder}/${name}`, {encoding: 'utf8'})).shape.length : 0;
+    });
+    await parts(page);
+    await tap(browser, 184, 382); // Cut
+    await tap(browser, 1195, 352);
+    await page.waitForFunction(() => FS.analyzePath('/home/web_user/.local/share/palpa/parts').exists, null, {timeout: 60000});
+    const cut = await done();
+    await page.keyboard.press('u');
+    await frames(page, 5);
+    assert.equal(await done(), cut - 1);
+    await page.keyboard.press('Control+y');
+    await frames(page, 5);
+    assert.equal(await done(), cut);
+}));
+
 const tap = async (browser, x, y) => {
     await pen(browser, 'mouseMoved', x, y, 0);
     await pen(browser, 'mousePressed', x, y, 0.4);

@@ -130,6 +130,7 @@ test('a full storage with trials: export, remove, and it goes on; what was expor
     await page.click('#close-trials');
     await page.keyboard.press('r');
     await until('the next trial', async () => (await report(page)).trials.length === 3);
+    assert.deepEqual((await report(page)).problems, []); // what was not stored is now
 }));
 
 test('a full storage with a desk: the desk gets the trial, and it goes on', () => withPage({quiet: true}, async (browser, desk) => {
@@ -144,6 +145,7 @@ test('a full storage with a desk: the desk gets the trial, and it goes on', () =
     await page.click('#close-trials');
     await page.keyboard.press('r');
     await until('the next trial', async () => (await report(page)).trials.length === 2);
+    await until('nothing to say', async () => (await report(page)).problems.length === 0);
 }));
 
 test('the browser closes its storage: what is palpated afterwards can be exported', () => withPage({quiet: true}, async (browser, desk) => {

@@ -24,6 +24,7 @@ class BusyKeeper : public session::TrialKeeper {
     void participant(const std::string&) override {}
     bool ready() const override { return !busy; }
     std::string problem() override { return {}; }
+    std::string solved() override { return {}; }
     std::string note() const override { return {}; }
     std::string where(const std::string& code) const override { return "The trials of " + code + " are here."; }
     void keep_settings(const std::filesystem::path&) override {}

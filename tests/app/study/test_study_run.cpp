@@ -100,6 +100,10 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
         steps += name_of(run.step) + std::string(" ");
         if (at<step::Instructions>(run) || at<step::Pause>(run)) {
             begin_step(run);
+        } else if (const auto* told = std::get_if<step::Feedback>(&run.step)) {  // of what was typed in
+            CHECK(told->found == 1);
+            CHECK(told->nodules == 2);
+            begin_step(run);
         } else if (at<step::Trial>(run)) {
             run_trial(run);
         } else if (at<step::Typed>(run)) {
@@ -111,8 +115,9 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
             rate(run, "6");
         }
     }
-    CHECK(steps ==
-          "instructions trial instructions trial ratings pause instructions typed instructions typed ratings ");
+    CHECK(
+        steps ==
+        "instructions trial instructions trial ratings pause instructions typed feedback instructions typed ratings ");
     CHECK(read_text(log / "participants.tsv").find("sub-P7\t33\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n") != std::string::npos);
     const Observations seen = read_study(log);
     CHECK(seen.notes.empty());
@@ -141,12 +146,8 @@ TEST_CASE("study run: practice tells what was found, a rating names what is rate
     answer_questions(run);
     begin_step(run);
     REQUIRE(due_trial(run).practice);
-    Score score;
-    score.true_positives = 2;
-    score.false_negatives = 1;
-    score.false_positives = 4;
     std::get<step::Trial>(run.step).begun = true;
-    give_feedback(score, run);
+    give_feedback(2, 1, 4, run);
     REQUIRE(at<step::Feedback>(run));
     CHECK(std::get<step::Feedback>(run.step).found == 2);
     CHECK(std::get<step::Feedback>(run.step).nodules == 3);
