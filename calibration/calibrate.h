@@ -46,7 +46,7 @@ struct Calibration {
     double force_at_full_N = 0.0;
     bool by_repeats = false;  // the folds are the repeats
     Bootstrap bootstrap;
-    std::optional<double> lag_s;
+    std::optional<double> lag_s;  // that was removed
     std::optional<Hysteresis> hysteresis;
     std::optional<Drift> drift;
     LevelsDelivered levels;

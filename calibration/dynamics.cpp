@@ -191,6 +191,13 @@ std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange 
     return out;
 }
 
+CalibrationRows without_loop(const CalibrationRows& rows, double relative) {
+    CalibrationRows out = rows;
+    const std::vector<int> direction = directions(rows);
+    for (std::size_t i = 0; i < direction.size(); ++i) out.force_N[i] /= 1.0 + 0.5 * relative * direction[i];
+    return out;
+}
+
 std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve) {
     std::map<int, std::vector<double>> offsets;
     for (std::size_t i = 0; i < points.repeat.size(); ++i) {

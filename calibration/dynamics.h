@@ -16,8 +16,8 @@ namespace palpa::calibration {
 //   lag = argmax over tau of corr( level(t_i), g(F(t_i - tau)) ),   |tau| <= 0.5 s, the peak by a parabola
 //
 // Returns nothing if it cannot be determined: no times, no release (a steady ramp fits any lag), too few samples, or a
-// maximum at the edge. Hysteresis that depends on direction alone, not on speed, looks like a lag at one speed: press
-// at two speeds to tell them apart.
+// maximum at the edge. Hysteresis that depends on direction alone, not on speed, looks like a lag here; calibrate() removes
+// only a lag that explains the loop better than hysteresis does.
 std::optional<double> lag_s(const CalibrationRows& rows, const Curve& curve, LevelRange range);
 
 // Returns the rows with the force that acted when the level was formed, F(t - lag), linear between samples. Rows at the
@@ -31,6 +31,9 @@ struct Hysteresis {
 };
 // Returns nothing unless both directions occur, by the phases or, without them, by the times.
 std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange range);
+
+// Returns the rows with a loop of this size taken out: half of it from the forces of pressing, half added to those of releasing.
+CalibrationRows without_loop(const CalibrationRows& rows, double relative);
 
 struct Drift {
     std::vector<double> repeat_offset;  // of each repeat: median of F measured / F curve - 1

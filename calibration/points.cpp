@@ -33,7 +33,7 @@ void check_enough(const CalibrationRows& rows) {
     }
     const auto [lowest, highest] = std::minmax_element(rows.force_N.begin(), rows.force_N.end());
     if (*lowest == *highest) {
-        throw files::bad_input(rows.file, "force_N",
+        throw files::bad_input(rows.file, rows.force_column,
                                "the same force, " + files::short_number(*lowest) + " N, in every row",
                                "forces that rise with the level (is the sensor connected?)");
     }
@@ -42,17 +42,21 @@ void check_enough(const CalibrationRows& rows) {
 // Throws InputError for forces in a wrong unit. A pen's full scale is 1 to 10 N, 100 to 1,000 gf.
 void check_unit(const CalibrationRows& rows) {
     const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
+    const bool gf = rows.force_column == "force_gf";
     if (highest_N > 60.0) {
         throw files::bad_input(
-            rows.file, "force_N", "forces up to " + files::short_number(highest_N) + " N",
-            "less than 60 N under a pen or finger (gram-force? name the column force_gf; --any-force if it is right)");
+            rows.file, rows.force_column, "forces up to " + files::short_number(highest_N) + " N",
+            "less than 60 N under a pen or finger (" +
+                std::string(gf ? "is the column in gram-force?" : "gram-force? name the column force_gf;") +
+                " --any-force if it is right)");
     }
     if (highest_N < 0.15) {
-        throw files::bad_input(
-            rows.file, "force_gf",
-            "no force above " + files::short_number(highest_N) + " N (" + files::short_number(highest_N / 9.80665e-3) +
-                " gf)",
-            "more than 0.15 N at the highest level (newtons? name the column force_N; --any-force if it is right)");
+        throw files::bad_input(rows.file, rows.force_column,
+                               "no force above " + files::short_number(highest_N) + " N (" +
+                                   files::short_number(highest_N / 9.80665e-3) + " gf)",
+                               "more than 0.15 N at the highest level (" +
+                                   std::string(gf ? "newtons? name the column force_N;" : "is the column in newtons?") +
+                                   " --any-force if it is right)");
     }
     // rows in another unit than their neighbours in level are off by a factor of 102
     const auto order = by_level(rows.level);

@@ -19,6 +19,7 @@ struct CalibrationRows {
     std::vector<std::size_t> line;
     std::vector<double> level;
     std::vector<double> force_N;
+    std::string force_column = "force_N";  // the file's: force_N, or force_gf alone
     std::vector<double> time_s;
     std::vector<int> repeat;  // 0, 1, ... by first occurrence
     std::vector<PressPhase> phase;

@@ -87,6 +87,7 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
     const Columns columns = find_columns(table, options);
     CalibrationRows rows;
     rows.file = file.string();
+    if (!columns.force_N) rows.force_column = "force_gf";
     std::map<std::string, int> repeats;
     std::map<std::string, int> sessions;
     std::vector<int> session;

@@ -27,14 +27,15 @@ std::string band_block(std::size_t n, const DesignLine& design, double force_N, 
 
 std::string key_of(const DesignLine& design) {
     return single_quoted(design.name + ": " + files::short_number(1e-3 * design.stiffness_N_per_m) + " N/mm, " +
-                         files::short_number(1e3 * design.mass_kg) + " g");
+                         files::short_number(1e3 * design.mass_kg) + " g" + (design.applies ? "" : ", DOES NOT APPLY"));
 }
 
 }  // namespace
 
 std::string designs_script(const DesignLine& a, const DesignLine& b, double force_N,
                            const std::vector<double>& weber_fractions) {
-    std::vector<double> widest_first = weber_fractions;
+    std::vector<double> widest_first;
+    if (a.applies && b.applies) widest_first = weber_fractions;
     std::sort(widest_first.rbegin(), widest_first.rend());
     std::string out = line_block("a", a, force_N) + line_block("b", b, force_N);
     for (std::size_t i = 0; i < widest_first.size(); ++i) out += band_block(i, a, force_N, widest_first[i]);

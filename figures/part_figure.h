@@ -11,6 +11,7 @@ struct DesignLine {
     std::string name;
     double stiffness_N_per_m = 0.0;
     double mass_kg = 0.0;
+    bool applies = true;  // false: its line says that it does not, and no band is drawn
 };
 
 // Draws to .png, .svg or .pdf: a line for each design up to `force_N`, and a band for each Weber fraction of compliance

@@ -34,9 +34,9 @@ PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<dou
 
 // What the load's part along the axis says against small displacements, "" for nothing or for a part that is no beam: pressed
 // by a share k of its buckling load, a beam bends 1 / (1 - k) times as far sideways, pulled 1 / (1 + k) times (Timoshenko, Gere,
-// Theory of Elastic Stability, sections 1.11 and 1.12). Doubts k above kMostAxial if the load has another part than that along
-// the axis, and k above kMostColumn if it presses straight.
-inline constexpr double kMostAxial = 0.05;
+// Theory of Elastic Stability, sections 1.11 and 1.12); along the load, which the tip then also follows along the axis, it is
+// up to 1.9 k. Doubts k above kMostAxial if the load has another part than that along the axis, and k above kMostColumn if it presses straight.
+inline constexpr double kMostAxial = 0.015;
 inline constexpr double kMostColumn = 0.5;
 inline constexpr double kStraight = 1e-3;  // sine of the angle between the load and the axis
 std::string axial_doubt(const Part& part, const PartLoad& load);

@@ -88,7 +88,8 @@ class Pen {
         sample.t_host_s = rounded(t_s_, 1e-6);
         sample.t_device_s = rounded(t_s_, 1e-6);
         sample.pointer_id = 1;
-        sample.tool = platform::Tool::pen;
+        const bool finger = plan_.profile.level == calibration::LevelField::contact_area;
+        sample.tool = finger ? platform::Tool::finger : platform::Tool::pen;
         sample.phase = phase;
         const Eigen::Vector2d screen_m = view_.axes * (p_m - view_.area.centre_m);
         const Eigen::Vector2d px = view_.centre_px + screen_m.cwiseProduct(view_.input_px_per_m);
@@ -101,6 +102,7 @@ class Pen {
                                   ? std::round(level)
                                   : std::round(share * kLevels);
         sample.pressure = rounded(share, 1.0 / kLevels);
+        if (finger) calibration::set_level(plan_.profile, level, sample);
         take_(sample);
         t_s_ += 1.0 / options_.rate_Hz;
     }

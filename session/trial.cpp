@@ -17,13 +17,7 @@ std::vector<study::Target> targets_of(const scene::Plan& plan) {
     return targets;
 }
 
-void add_to_path(const scene::State& state, Trial& trial) {
-    const bool begins = !trial.pressing;
-    const Eigen::Vector2d& p_m = state.touch.p_m;
-    if (!begins && (p_m - trial.path.back().p_m).norm() < trial.path_step_m) {
-        trial.path.back().depth_m = std::max(trial.path.back().depth_m, static_cast<float>(state.contact.depth_m));
-        return;
-    }
+void push_point(const PathPoint& point, Trial& trial) {
     if (trial.path.size() == kPathPoints) {  // keeps every second point, and where presses begin
         std::size_t kept = 0;
         for (std::size_t i = 0; i < trial.path.size(); ++i) {
@@ -32,8 +26,22 @@ void add_to_path(const scene::State& state, Trial& trial) {
         trial.path.resize(std::min(kept, kPathPoints - 1));
         trial.path_step_m *= 2.0;
     }
-    trial.path.push_back(
-        {p_m, static_cast<float>(state.contact.depth_m), begins, static_cast<float>(clock_s(trial, trial.now_s))});
+    trial.path.push_back(point);
+}
+
+// A point for each step of the way, and for each that a pen which stays goes deeper or comes up.
+void add_to_path(const scene::State& state, Trial& trial) {
+    const bool begins = !trial.pressing;
+    const auto depth_m = static_cast<float>(state.contact.depth_m);
+    if (!begins) {
+        PathPoint& last = trial.path.back();
+        const double way_m = std::max((state.touch.p_m - last.p_m).norm(), double{std::abs(depth_m - last.depth_m)});
+        if (way_m < trial.path_step_m) {
+            last.depth_m = std::max(last.depth_m, depth_m);
+            return;
+        }
+    }
+    push_point({state.touch.p_m, depth_m, begins, static_cast<float>(clock_s(trial, trial.now_s))}, trial);
 }
 
 // Adds to the way and the impulse while pressing. Motion inside the dead band does not count as way, so that jitter and
@@ -64,6 +72,10 @@ void end_press(Trial& trial) {
     trial.pressed_s += held_s;
     trial.impulse_Ns += held_s * trial.pressed_N;
     trial.pressing = false;
+    PathPoint last = trial.path.back();
+    last.begins = false;
+    last.t_s = static_cast<float>(clock_s(trial, trial.now_s));
+    if (last.t_s > trial.path.back().t_s) push_point(last, trial);  // until then it was held
 }
 
 void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
@@ -97,7 +109,10 @@ void act(const platform::Sample& sample, const scene::State& state, Trial& trial
     if (sample.action == platform::Action::undo && !trial.marks.empty()) trial.marks.pop_back();
     if (sample.action == platform::Action::pause || sample.action == platform::Action::resume)
         hold_clock(sample.action == platform::Action::pause, trial);
-    if (sample.action == platform::Action::finish) trial.finished = true;
+    if (sample.action == platform::Action::finish) {
+        end_press(trial);
+        trial.finished = true;
+    }
     if (sample.action != platform::Action::mark || !std::isfinite(sample.x_px + sample.y_px)) return;
     const Eigen::Vector2d p_m = scene::tissue_of_px(state.view, {sample.x_px, sample.y_px});
     if (scene::on_tissue(state.view, p_m))
@@ -138,7 +153,7 @@ void observe(const scene::Plan& plan, const platform::Sample& sample, const scen
     trial.began = true;
     trial.now_s = std::max(trial.now_s, sample.t_host_s);
     // the tissue moves below a pen that stays, so that the pen's way begins anew
-    if (sample.phase == platform::Phase::ui && sample.action == platform::Action::resize) trial.pressing = false;
+    if (sample.phase == platform::Phase::ui && sample.action == platform::Action::resize) end_press(trial);
     if (sample.phase == platform::Phase::ui) return act(sample, state, trial);
     observe_press(plan, sample, state, trial);
 }

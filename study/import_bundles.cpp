@@ -30,17 +30,17 @@ Bundle read_whole(const fs::path& file) {
     return read_bundle(files::read_text(file, kLargestBundle_bytes), file.string());
 }
 
-// True for runs on a tablet outside the study: the bundle has no study.json, and the settings of a run name no
-// protocol.
+// True for runs on a tablet outside the study: the bundle has nothing that only a study has, and no settings that name a
+// protocol (a run that was interrupted has none at all).
 bool is_single_run(const Bundle& bundle) {
-    bool single = false;
     for (const BundleFile& file : bundle.files) {
-        if (file.kind == LogFileKind::identity) return false;
+        const bool of_study = file.kind == LogFileKind::identity || file.kind == LogFileKind::people ||
+                              file.name == "protocol.json" || grows(file.name);
+        if (of_study) return false;
         const bool settings = file.name.find("_settings.json") != std::string::npos;
-        if (settings && files::Json::accept(file.text))
-            single = single || !files::Json::parse(file.text).contains("study");
+        if (settings && files::Json::accept(file.text) && files::Json::parse(file.text).contains("study")) return false;
     }
-    return single;
+    return true;
 }
 
 // True if `text` holds all of `other`: files of answers grow only at their end.

@@ -20,8 +20,9 @@ struct Progress {
     int finished = 0;           // those that are excluded among them
     int interrupted = 0;        // runs that ended without finish
     int excluded = 0;           // finished, and left out of the analysis
-    std::string replaced_by{};  // who has the place now, and is to do the tests that this one did not; or empty
-    int missing() const { return replaced_by.empty() && planned > finished ? planned - finished : 0; }
+    std::string replaced_by{};  // who has the participant's place now; or empty
+    bool counts = true;         // false: who has the place now has begun, and plans these tests again
+    int missing() const { return counts && planned > finished ? planned - finished : 0; }
 };
 
 // One run or one choice, as the log labels it.

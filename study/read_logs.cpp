@@ -365,6 +365,9 @@ Observations read_study(const fs::path& directory) {
             out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index});
         }
     }
+    std::set<std::string> begun;
+    for (const Progress& row : out.progress) begun.insert(row.participant);
+    for (Progress& row : out.progress) row.counts = begun.count(row.replaced_by) == 0;
     check_exclusions(directory, study.left_out, study.left_out_trials, codes, finished);
     take_staircases(directory, study.left_out, study.left_out_trials, out);
     const auto uncounted = out.interrupted_trials + out.practice_trials + out.excluded_trials;

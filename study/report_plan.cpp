@@ -9,14 +9,14 @@
 namespace palpa::study {
 namespace {
 
-// Sums over all participants who were not replaced, in the order in which conditions appear.
+// Sums over all places of the plan, each by who has it now, in the order in which conditions appear.
 std::vector<Progress> progress_by_condition(const std::vector<Progress>& rows) {
     std::vector<Progress> sums;
     std::map<std::string, std::size_t> place;
     for (const Progress& row : rows) {
         const auto [it, fresh] = place.emplace(row.condition, sums.size());
         if (fresh) sums.push_back({"", "", row.condition});
-        if (!row.replaced_by.empty()) continue;  // the place counts once, for who has it now
+        if (!row.counts) continue;
         Progress& sum = sums[it->second];
         sum.planned += row.planned;
         sum.finished += row.finished;
@@ -67,8 +67,7 @@ void add_plan_json(const Report& report, files::Json& json) {
 
 std::vector<ReportTable> plan_tables(const Report& report) {
     const std::vector<std::string> counts{"planned", "finished", "interrupted", "missing", "excluded"};
-    ReportTable sums{
-        "plan", "Logs against the plan: tests by condition, without participants who were replaced", {"condition"}, {}};
+    ReportTable sums{"plan", "Logs against the plan: tests by condition, each place once", {"condition"}, {}};
     ReportTable all{"plan_participants",
                     "Logs against the plan: tests by participant and condition",
                     {"participant", "group", "condition", "replaced_by"},
@@ -98,7 +97,7 @@ std::string plan_summary(const Report& report) {
     Progress sum;
     int missing = 0;
     for (const Progress& row : report.progress) {
-        if (!row.replaced_by.empty()) continue;
+        if (!row.counts) continue;
         sum.planned += row.planned;
         sum.finished += row.finished;
         missing += row.missing();

@@ -21,8 +21,9 @@ constexpr std::array kColumnTexts{
     ColumnText{"", "participant", "code without sub-; all or empty: all participants"},
     ColumnText{"", "group", "all: all participants; else the group whose participants the row is of"},
     ColumnText{"plan_participants", "group", "of the participant"},
-    ColumnText{"plan_participants", "replaced_by",
-               "who has the participant's place in the plan now, which plans these tests again; n/a: not replaced"},
+    ColumnText{
+        "plan_participants", "replaced_by",
+        "who has the participant's place in the plan now, and plans these tests again once begun; n/a: not replaced"},
     ColumnText{"", "comparison", "stiffness that was compared with the reference; all: all of them"},
     ColumnText{"", "quantity", "what is compared: sensitivity, ppv or correct"},
     ColumnText{"trials", "quantity", "what is measured, with its unit in the name"},

@@ -17,7 +17,8 @@ constexpr double kLeastContact_N = 1e-3;
 constexpr double kMostForce_N = 1e3;
 constexpr int kFewestTicks = 20;
 constexpr double kLeastTravel_m = 1e-4;  // in contact: a depth that stays tells no stiffness
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 24;
+constexpr int kMostHalved = 3;  // a step that makes the misfit larger, before it is taken all the same
 // ln of the modulus factor, friction share, zero in mm, and the share of a step that a lagging drive still lacks after the time
 // between two rows: the forces are straight lines over it near 0, unlike over the lag itself
 using Parameters = Eigen::Vector4d;
@@ -235,6 +236,9 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     if (!options.lag && known_lag_s > 0.0) p(3) = std::exp(-presses.between_s / known_lag_s);
     const bool recorded = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_lengths; });
     Senses sense = recorded_senses(ticks);  // none, where no lengths are recorded
+    Parameters best = p;                    // where the last step began
+    double best_rms_N = HUGE_VAL;
+    int halved = 0;
     for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
         if (options.progress) options.progress(static_cast<double>(out.rounds - 1) / kMostRounds);
         const DeviceModel model = model_with(device, p);
@@ -246,6 +250,14 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
             throw std::runtime_error("the device has an equilibrium at " + std::to_string(misfit.known) +
                                      " rows of the presses, expected at least " + std::to_string(kFewestTicks));
         if (out.rounds == 1) out.rms_before_N = misfit.rms_N;
+        if (misfit.rms_N > best_rms_N && halved < kMostHalved) {
+            p = 0.5 * (p + best);
+            ++halved;
+            continue;
+        }
+        best = p;
+        best_rms_N = misfit.rms_N;
+        halved = 0;
         out.rms_after_N = misfit.rms_N;
         // a little of each parameter's own size keeps apart what the presses cannot tell apart
         const Eigen::MatrixXd J = slopes(device, presses, recorded ? nullptr : &sense, p, at_N);

@@ -170,7 +170,10 @@ void add_bench_visibility(CLI::App& bench) {
         ->check(CLI::Range(0.01, 1e3));
     command->add_option("--speed-mm-per-s", options->speed_mm_per_s, "speed of the stroke (default 30)")
         ->check(CLI::Range(0.1, 1e3));
-    command->add_option("--distance-cm", options->distance_cm, "from the eye to the screen (default 40)")
+    command
+        ->add_option("--distance-cm", options->distance_cm,
+                     "from the eye to the screen (default 40): turns lengths into angles, thresholds too, so that no "
+                     "verdict depends on it")
         ->check(CLI::Range(1.0, 1e3));
     command->add_option("--px-per-mm", options->px_per_mm, "of the screen (default: the tissue is shown in true size)")
         ->check(CLI::Range(1.0, 100.0));

@@ -221,7 +221,8 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
     std::printf("\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %s\n",
                 residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
                 100.0 * residual.worst_share(),
-                map.noise_N ? (files::short_number(*map.noise_N) + " N").c_str() : "not known (too few neighbours)");
+                map.noise_N ? ("at most " + files::short_number(*map.noise_N) + " N").c_str()
+                            : "not known (too few neighbours)");
     if (!report.tangential) return;
     const stiffnessmaps::ImportResidual& tangential = *report.tangential;
     std::printf("  tangential force against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%)\n",

@@ -51,12 +51,17 @@ files::Json design_json(const parts::Part& part, const parts::ComparedDesign& de
             {"switch_force_N", number_if(design.switch_force_N)}};
 }
 
+bool apply(const parts::PartComparison& comparison) {
+    return comparison.a.stiffness.why_not.empty() && comparison.b.stiffness.why_not.empty();
+}
+
 files::Json felt_json(const parts::PartComparison& comparison) {
     files::Json json{{"difference_percent", files::number_or_null(100.0 * comparison.difference)}};
     for (const parts::WeberFraction& weber : parts::kWeberFractions) {
-        json["thresholds"].push_back({{"weber_percent", 100.0 * weber.share},
-                                      {"beyond", comparison.difference > weber.share},
-                                      {"measured_with", weber.measured_with}});
+        json["thresholds"].push_back(
+            {{"weber_percent", 100.0 * weber.share},
+             {"beyond", apply(comparison) ? files::Json(comparison.difference > weber.share) : files::Json(nullptr)},
+             {"measured_with", weber.measured_with}});
     }
     return json;
 }
@@ -80,7 +85,7 @@ void print_comparison(const parts::Part& a, const parts::Part& b, const parts::P
         std::printf(", and switches at %s times the force",
                     files::short_number(*comparison.switch_force_ratio).c_str());
     std::printf("\n  compliances differ by %s %%\n", files::short_number(100.0 * comparison.difference).c_str());
-    if (!comparison.a.stiffness.why_not.empty() || !comparison.b.stiffness.why_not.empty()) {
+    if (!apply(comparison)) {
         std::printf("    whether people tell them apart does not follow from a stiffness that does not apply\n");
         return;
     }
@@ -89,6 +94,10 @@ void print_comparison(const parts::Part& a, const parts::Part& b, const parts::P
                     comparison.difference > weber.share ? "more than" : "within",
                     files::short_number(100.0 * weber.share).c_str(), weber.measured_with);
     }
+}
+
+figures::DesignLine line_of(const parts::Part& part, const parts::ComparedDesign& design) {
+    return {part.name, design.stiffness.stiffness_N_per_m, design.mass_kg, design.stiffness.why_not.empty()};
 }
 
 // A button's spring and latch are keys of their file and no voxels.
@@ -125,9 +134,8 @@ void compare(const CompareOptions& options) {
     if (!options.figure.empty()) {
         std::vector<double> fractions;
         for (const parts::WeberFraction& weber : parts::kWeberFractions) fractions.push_back(weber.share);
-        figures::plot_designs({a.name, comparison.a.stiffness.stiffness_N_per_m, comparison.a.mass_kg},
-                              {b.name, comparison.b.stiffness.stiffness_N_per_m, comparison.b.mass_kg},
-                              comparison.force_N, fractions, options.figure);
+        figures::plot_designs(line_of(a, comparison.a), line_of(b, comparison.b), comparison.force_N, fractions,
+                              options.figure);
     }
     if (!comparison.a.stiffness.converged || !comparison.b.stiffness.converged)
         throw std::runtime_error("not converged");

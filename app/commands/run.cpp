@@ -38,6 +38,10 @@ void print_result(const files::Json& result) {
     if (inexact > 0)
         std::printf("  ! %lld samples whose contact did not settle, or whose force was not met\n",
                     static_cast<long long>(inexact));
+    const std::int64_t without_level = result["counts"]["without_level"].get<std::int64_t>();
+    if (without_level > 0)
+        std::printf("  ! %lld samples of a touch without the level that the profile reads: they press with no force\n",
+                    static_cast<long long>(without_level));
     const std::int64_t backwards = result["counts"]["backwards"].get<std::int64_t>();
     if (backwards > 0)
         std::printf("  ! %lld samples left out: their times run backwards\n", static_cast<long long>(backwards));

@@ -130,8 +130,15 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
     }
     std::printf("what is left, W a + d: %s mm; rank of W: %d\n", files::short_number(1e3 * answer.residual_m).c_str(),
                 answer.rank);
-    for (const auto& name : json["active"])
-        std::printf("at its limit: %s\n", files::printable(name.get<std::string>()).c_str());
+    for (std::size_t j = 0; j < model.actuators.size(); ++j) {
+        if ((answer.active >> j & 1U) == 0U) continue;
+        const tangible::SoftActuator& actuator = model.actuators[j];
+        const double near = 0.01 * (actuator.upper - actuator.lower);
+        const bool at_limit =
+            answer.actuation[j] < actuator.lower + near || answer.actuation[j] > actuator.upper - near;
+        std::printf("%s: %s\n", at_limit ? "at its limit" : "held at its pretension, within its limits",
+                    files::printable(actuator.name).c_str());
+    }
     std::printf("%s, %s%s; %d Newton steps, the last tick took %s us\n", name_of(answer.status),
                 reachable(answer) ? "reachable" : "NOT reachable",
                 json["limited_by"].is_null()

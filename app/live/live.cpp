@@ -168,14 +168,18 @@ void watch_files(platform::Window& window, App& app) {
     app.notices.problems.push_back(why);
 }
 
-// Gives the keeper the trial so far once a second, so that a reload or an empty battery costs at most a second.
+// Gives the keeper the trial so far once a second and with each mark, so that a reload or an empty battery costs at most a
+// second of samples.
 void keep_part(double now_s, App& app) {
     constexpr double kEvery_s = 1.0;
-    if (app.keeper == nullptr || !app.session.files || now_s - app.parted_s < kEvery_s) return;
+    const std::size_t marks = app.session.trial.marks.size();
+    const bool due = now_s - app.parted_s >= kEvery_s || marks != app.parted_marks;
+    if (app.keeper == nullptr || !app.session.files || !due) return;
     if (study_of(app.doing) == nullptr && !app.session.trial.last_px) return;  // nobody has pressed yet
     if (app.session.log) app.session.log->flush();
     app.keeper->keep_part(*app.session.files);
     app.parted_s = now_s;
+    app.parted_marks = marks;
 }
 
 // Nobody has used the app here yet, and nothing is asked of it.

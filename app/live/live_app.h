@@ -91,7 +91,8 @@ struct App {
     TactileControl tactile;
     TangibleControl tangible;
     PartControl parts;
-    double parted_s = 0.0;  // when the keeper was last given the trial so far
+    double parted_s = 0.0;         // when the keeper was last given the trial so far
+    std::size_t parted_marks = 0;  // how many marks it had then
     bool quit = false;
 };
 
@@ -222,6 +223,9 @@ void load_study(const RunOptions& options, App& app);  // throws InputError or s
 // Carries out what was asked for in a step and its consequences, and ends a trial whose time is over.
 void follow_study(const std::optional<StudyWish>& wish, platform::Window& window, const Gui& gui, App& app);
 void finish_study_trial(platform::Window& window, App& app);
+// Interrupts a pen's trial that is to be finished, so that it is repeated, if the pen's pressure has never varied: short taps of
+// a pen without a sensor look so. Returns true if it did.
+bool repeat_if_pen_unproven(platform::Window& window, App& app);
 // Whether what leads is the motion on a device, not that on the screen.
 bool felt_elsewhere(const App& app);
 // Returns when the time limit ends the present trial; infinity: never.

@@ -142,6 +142,14 @@ void load_study(const RunOptions& options, App& app) {
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
+bool repeat_if_pen_unproven(platform::Window& window, App& app) {
+    StudyRun& run = *study_of(app.doing);
+    note_pen(app, run);
+    if (run.pen == PenVerdict::ready || run.pen == PenVerdict::not_needed) return false;
+    interrupt_study_trial(Interruption::no_pressure, window, app);
+    return true;
+}
+
 // Reveals nothing. The next step comes once the trial is on the disk.
 void finish_study_trial(platform::Window& window, App& app) {
     StudyRun& run = *study_of(app.doing);

@@ -192,7 +192,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     const bool typed = !items.empty() && items[0].choices.empty() && !run.on_tablet;
     const bool focus = typed && answers.size() != items.size();
     answers.resize(items.size());
-    take_digit(items, gui, answers);
+    if (!is_double_enter(run, now_s)) take_digit(items, gui, answers);  // the key may have answered the step before
     const auto* rated = std::get_if<step::Ratings>(&run.step);
     title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
     if (rated != nullptr) paragraph(words::kAboutLastTrials);  // a condition's name would tell what is compared
@@ -254,11 +254,12 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
     if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
         warning_paragraph(words::kNeedsPressure);
-        paragraph(words::kCloseAndContinue);
+        paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
     } else if (!step.here) {
         if (run.devices_note.empty()) warning_paragraph(words::filled(words::kTrialWaits, {device}));
-        paragraph(words::kCloseAndContinue);
+        paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
     }
+    if (step.here && run.pen == PenVerdict::untried) paragraph(words::kPenUntried);
     gap(gui);
     if (forward(words::kStart, gui, step.here)) wishes.study = BeginStep{};
     trials_button(gui, run, wishes);

@@ -100,7 +100,10 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
     const std::size_t count = std::min(soft.body.actuators.size(), session::kMostTangibleActuators);
     for (std::size_t k = 0; k < count; ++k) {
         const TangibleActuator& actuator = soft.body.actuators[k];
-        const bool at_limit = ((soft.moment.active >> k) & 1U) != 0;
+        const bool held = ((soft.moment.active >> k) & 1U) != 0;
+        const double near = 0.01 * (actuator.upper - actuator.lower);
+        const double a = soft.moment.actuation[k];
+        const bool at_limit = held && (a < actuator.lower + near || a > actuator.upper - near);
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(actuator.name.c_str());
         ImGui::TableNextColumn();
@@ -110,7 +113,8 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
         ImGui::TableNextColumn();
         const std::string command = actuator.cavity ? in_unit(soft.moment.command[k], 1e6, 2, "ml")
                                                     : in_unit(soft.moment.command[k], 1e3, 2, "mm");
-        ImGui::TextUnformatted(at_limit ? words::filled(words::kAtLimit, {command}).c_str() : command.c_str());
+        const char* said = at_limit ? words::kAtLimit : held ? words::kHeld : "{}";
+        ImGui::TextUnformatted(words::filled(said, {command}).c_str());
     }
     ImGui::EndTable();
 }

@@ -379,6 +379,7 @@ inline constexpr const char* kSoftStoppedBanner =
 inline constexpr const char* kSoftStoppedInStudy = "Stopped: {}. The soft device is relaxed.";
 inline constexpr const char* kSoftDeformed = "{}: outline wanted, filled rendered";
 inline constexpr const char* kAtLimit = "{} (limit)";
+inline constexpr const char* kHeld = "{} (held)";  // at the pretension or by its rate, within the limits
 inline constexpr const char* kWantedForce = "Wanted";
 inline constexpr const char* kRenderedForce = "Rendered ({})";
 inline constexpr const char* kForceError = "Force error";
@@ -605,6 +606,10 @@ inline constexpr const char* kTimeOverUntouched =
     "Nothing was touched, so nothing is counted, and this part is repeated. Choose Start when you are ready.";
 inline constexpr const char* kTrialInterrupted =
     "The trial was interrupted. It is logged as interrupted, does not count, and will be repeated.";
+inline constexpr const char* kLeaveAndContinue =
+    "You can also leave this page: all finished trials are stored. To continue, open the study again with the same "
+    "participant "
+    "code.";
 inline constexpr const char* kCloseAndContinue =
     "You can also close the study: all finished trials are saved. To continue, run the same command with the same "
     "participant code.";

@@ -343,7 +343,7 @@ void begin_step(StudyRun& run) {
     if (at<step::Told>(run) || at<step::Feedback>(run)) return finish_due(run);
     const auto* device = std::get_if<step::Device>(&run.step);
     if (device == nullptr) return begin_trial_step(run);
-    if (device->here) enter(step::Trial{}, run);  // in a forced choice, the same interval
+    if (device->here && !left_elsewhere(run)) enter(step::Trial{}, run);  // in a forced choice, the same interval
 }
 
 void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false, left, false}, run); }

@@ -55,6 +55,10 @@ std::optional<double> depth_in_name(const fs::path& path) {
         std::size_t begin = end;
         while (begin > 0 && (std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0 || name[begin - 1] == '.'))
             --begin;
+        // "2,5mm" and "2p5mm" are no 5 mm
+        const bool cut = begin > 1 && (name[begin - 1] == ',' || name[begin - 1] == 'p') &&
+                         std::isdigit(static_cast<unsigned char>(name[begin - 2])) != 0;
+        if (cut) return std::nullopt;
         double value = 0.0;
         if (begin < end && files::parse_number(std::string_view(name).substr(begin, end - begin), value) && value > 0.0)
             return 1e-3 * value;
@@ -133,7 +137,7 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
     throw files::bad_input(stack.first_file, "",
                            std::to_string(n) + " matrices in " + std::to_string(files.size()) +
                                " files, with a depth in " + std::to_string(depths_m.size()) + " of their names",
-                           "the depth of each: --depths-mm, or names such as normal_3mm.csv");
+                           "the depth of each: --depths-mm, or names such as normal_3mm.csv and normal_2.5mm.csv");
 }
 
 // Sorts the layers by ascending depth. Throws InputError if two have the same depth.

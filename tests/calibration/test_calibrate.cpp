@@ -124,6 +124,17 @@ TEST_CASE("calibrate: the lag between pen and sensor is found and removed") {
     CHECK_FALSE(calibrate(ramp, {}).lag_s);
 }
 
+TEST_CASE("calibrate: a loop by direction alone is no lag, and is not removed as one") {
+    std::mt19937_64 random(kSeed);
+    for (const double loop : {0.05, 0.1, 0.2}) {
+        CAPTURE(loop);
+        const Calibration calibration = calibrate(waves(0.0, loop, random), {});
+        CHECK_FALSE(calibration.lag_s);
+        REQUIRE(calibration.hysteresis);
+        CHECK(calibration.hysteresis->median_relative == close_to(loop / (1.0 + 0.5 * loop)).epsilon(0.15));
+    }
+}
+
 TEST_CASE("calibrate: the loop between pressing and releasing is reported, by phase or by time") {
     std::mt19937_64 random(kSeed);
     CalibrationRows rows;
@@ -174,6 +185,9 @@ TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
     const Calibration area = calibrate(finger, options);
     CHECK(any_with(area.warnings, "the contact area grows no more"));
     CHECK(area.profile.full_contact_area_px2 > 0.0);
+    CalibrationRows in_px2 = finger;
+    for (double& level : in_px2.level) level *= 8000.0;
+    CHECK(contains(message_of([&] { calibrate(in_px2, options); }), "from 0 to 1, as `contact_area` has it"));
 
     CalibrationRows few;
     for (const double x : {0.3, 0.35, 0.4, 0.7, 0.75}) add_row(x, 0.1 * std::exp(4.0 * x), 0, few);

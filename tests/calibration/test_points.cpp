@@ -71,6 +71,10 @@ TEST_CASE("hard case 3: gram-force and newtons mixed up are seen") {
     CHECK(refusal_of_points("level,force_N\n0,5\n0.5,80\n1,250\n", {{}, true, true}) == "");
     CHECK(
         contains(refusal_of_points("level,force_gf\n0,0.05\n0.5,0.8\n1,2.5\n"), "(2.5 gf), expected more than 0.15 N"));
+    // the column is called as the file calls it
+    CHECK(contains(refusal_of_points("level,force_N\n0,0.0002\n0.5,0.0017\n1,0.0035\n"),
+                   "force_N: found no force above"));
+    CHECK(contains(refusal_of_points("level,force_gf\n0,50\n0.5,800\n1,25000\n"), "force_gf: found forces up to"));
     CHECK(contains(refusal_of_points("level,force_N,force_gf\n0,0.1,10.2\n0.5,1,102\n1,2,2\n"),
                    "line 4, force_gf: found '2', expected 203.9 gf"));
     std::string mixed = "level,force_N\n";

@@ -60,8 +60,8 @@ class Script {
         wait(0.2);
     }
     // A press on one place, with a pressure that rises by `rise` in each sample.
-    void press_at(double x_px, double y_px, double pressure, double rise) {
-        press(x_px, y_px, pressure, rise, 0.0, 0.7);
+    void press_at(double x_px, double y_px, double pressure, double rise, double seconds) {
+        press(x_px, y_px, pressure, rise, 0.0, seconds);
         row("pen", 0, "up", x_px, y_px, 0.0);
         wait(0.3);
     }
@@ -277,24 +277,33 @@ TEST_CASE("pressure: a pen that measures nothing is refused, and a press on the 
     const TemporaryFolder folder;
     write_protocol(folder);
     const auto first = folder / "log/sub-07/beh/sub-07_task-palpation_run-01_events.tsv";
+    const auto second = folder / "log/sub-07/beh/sub-07_task-palpation_run-02_events.tsv";
     const auto now = folder / "log/sub-07/now.json";
     Script script(folder / "script.tsv");
     script.wait(3.0);
     script.key(kEnter);  // begin; nobody has tried the pen
     script.wait(first);
-    script.press_at(600, 400, 0.5, 0.0);  // it always sends the same
+    for (int tap = 0; tap < 4; ++tap) script.press_at(600, 400, 0.5, 0.0, 0.03);  // too short for a verdict
+    script.key(kF);
     script.wait(now, "\"device\"");
-    script.key(kEnter);                     // not now
-    script.press_at(640, 500, 0.3, 0.002);  // in the middle of the panel
+    script.key(kEnter);  // the pen is there, and may measure
+    script.wait(second);
+    script.press_at(600, 400, 0.5, 0.0, 0.7);  // it always sends the same
+    script.wait(now, "\"device\"");
+    script.key(kEnter);                          // not now
+    script.press_at(640, 500, 0.3, 0.002, 0.7);  // in the middle of the panel
     script.key(kEnter);
     script.wait(1.0);
     script.stroke(0.4, true);
     script.key(kF);
     const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(script.close() + 6.0));
     CHECK(run_program(folder, arguments, now, [&] { CHECK(play_script(folder) == 0); }) == 0);
-    CHECK(text_of(first).find("\tno_pressure\t") != std::string::npos);
-    CHECK(text_of(first).find("\tinterrupted\t") != std::string::npos);
-    CHECK(text_of(folder / "log/sub-07/beh/sub-07_task-palpation_run-02_events.tsv").find("\tfinish\t") !=
+    for (const auto& events : {first, second}) {
+        CHECK(text_of(events).find("\tno_pressure\t") != std::string::npos);
+        CHECK(text_of(events).find("\tinterrupted\t") != std::string::npos);
+        CHECK(text_of(events).find("\tfinish\t") == std::string::npos);
+    }
+    CHECK(text_of(folder / "log/sub-07/beh/sub-07_task-palpation_run-03_events.tsv").find("\tfinish\t") !=
           std::string::npos);
     CHECK(read_json(folder / "out.json")["finished"] == 1);
 }

@@ -121,5 +121,6 @@ TEST_CASE(
     CHECK(contains(with(oblique, 10.0, Method::timoshenko), "and bends it further"));
     CHECK(contains(with(pulled, 10.0, Method::timoshenko), "and pulls it straight"));
     CHECK(with(oblique, 1.0, Method::timoshenko).empty());
+    CHECK(contains(with(oblique, 2.5, Method::elastica), "and bends it further"));  // 2.6 % of Euler's load: 5 % off
     CHECK(with("-z", 1.0, Method::timoshenko).empty());
 }

@@ -109,10 +109,12 @@ TEST_CASE("history: path and marks have the times of the person's clock, without
     send(195.0, Phase::ui, Action::finish, x_m);
     const KeptTrial trial = kept_trial(session, "2026-11-21T09:30:00Z");
     CHECK(trial.clock_s == close_to(5.0));
-    REQUIRE(trial.path.size() == 3);
+    REQUIRE(trial.path.size() == 5);
     CHECK(trial.path[0].time_s == close_to(0.0));
     CHECK(trial.path[1].time_s == close_to(1.0));
-    CHECK(trial.path[2].time_s == close_to(3.0));
+    CHECK(trial.path[2].time_s == close_to(1.5));  // lifted
+    CHECK(trial.path[3].time_s == close_to(3.0));
+    CHECK(trial.path[4].time_s == close_to(5.0));  // held until the end
     REQUIRE(trial.marks.size() == 1);
     CHECK(trial.marks[0].time_s == close_to(4.0));
     CHECK(session.trial.marks[0].onset_s == close_to(94.0));  // in the log: since the trial began

@@ -135,6 +135,25 @@ void live_trial(const TemporaryFolder& folder, TrialMode mode, End end) {
 
 }  // namespace
 
+TEST_CASE(
+    "replay: a simulated trace of a finger's scene is a finger's, with the contact areas that its profile reads") {
+    Session session;
+    Scene scene = load_scene("");
+    scene.profile = PALPA_SOURCE_DIR "/assets/profiles/xoom-finger.json";
+    auto plan = std::make_shared<const Plan>(make_plan(scene));
+    REQUIRE(plan->profile.level == calibration::LevelField::contact_area);
+    RasterOptions options;
+    options.seconds = 3.0;
+    options.force_N = 0.6;
+    const Trace trace = raster_trace(scene, *plan, options);
+    for (const Sample& sample : trace.samples) CHECK(sample.tool == Tool::finger);
+    change_tissue(std::move(scene), std::move(plan), {}, session);
+    begin_replay({}, trace.info, std::nullopt, session);
+    replay(trace, session);
+    CHECK(session.state.counters.without_level == 0);
+    CHECK(session.state.extremes.force_N == close_to(0.66).epsilon(0.02));  // 10 % up and down
+}
+
 TEST_CASE("replay: a trial's log is that of the live trial, byte for byte, finished or broken off") {
     const TemporaryFolder folder;
     End end = End::finished;

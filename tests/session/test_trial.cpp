@@ -177,6 +177,21 @@ TEST_CASE("trial: a press that is held without samples counts until it is lifted
     CHECK(hard_N > 2.0 * light_N);
 }
 
+TEST_CASE("trial: a press that is held when the trial is finished, or its window changed, counts up to then") {
+    for (const bool resized : {false, true}) {
+        CAPTURE(resized);
+        Trainee person;
+        person.sample(Phase::down, 40.0, 40.0, 0.5);
+        const double held_N = person.session.state.touch.force_N;
+        person.t_s += 4.0;
+        if (resized) person.make_window_small();
+        if (!resized) person.sample(Phase::ui, 40.0, 40.0, kMissing, Action::finish);
+        const Trial& trial = person.session.trial;
+        CHECK(trial.pressed_s == close_to(4.01));
+        CHECK(trial.impulse_Ns == close_to(4.01 * held_N));
+    }
+}
+
 TEST_CASE("trial: a window that changes its size after a press leaves the place of the next mark on the tissue") {
     Trainee person;
     SUBCASE("tissue under the pen") {}
@@ -356,6 +371,24 @@ TEST_CASE("trial: the clock starts at the first touch and stands still in a paus
     CHECK(clock_s(person.session.trial, 1e6) == clock());
     CHECK(person.session.finished[0]["clock_s"].get<double>() == close_to(clock()));
     CHECK(person.session.finished[0]["duration_s"].get<double>() > 40.0);
+}
+
+TEST_CASE("trial: the path knows how deep a pen that stays was at each time, and until when it stayed") {
+    Trainee person;
+    person.sample(Phase::down, 40.0, 40.0, 0.1);
+    person.sample(Phase::move, 40.0, 40.0, 0.2);
+    const float light_m = person.session.trial.path.back().depth_m;
+    person.t_s += 2.0;
+    person.sample(Phase::move, 40.0, 40.0, 0.9);
+    person.t_s += 3.0;
+    person.sample(Phase::up, 40.0, 40.0, 0.0);
+    const std::vector<PathPoint>& path = person.session.trial.path;
+    REQUIRE(path.size() >= 3);
+    const auto deep = path.end() - 2;
+    CHECK((path.end() - 3)->depth_m == light_m);
+    CHECK(deep->depth_m > 2.0f * light_m);
+    CHECK(deep->t_s == close_to(2.02).epsilon(0.01));
+    CHECK(path.back().t_s - deep->t_s == close_to(3.01).epsilon(0.01));
 }
 
 TEST_CASE("trial: points of the path know when they were pressed") {

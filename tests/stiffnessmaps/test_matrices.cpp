@@ -88,6 +88,10 @@ TEST_CASE("matrices: what is not stated is asked for") {
     CHECK(
         contains(said({"b_3mm.csv", "c_4mm.csv"}, spaced()), "c_4mm.csv: shape: found (3, 5), expected (3, 4) as in"));
     CHECK(contains(said({"b_3mm.csv", "b_3mm.csv"}, spaced()), "the depth 3 mm twice"));
+    for (const char* name : {"e_2,5mm.csv", "e_2p5mm.csv"}) {  // no 5 mm
+        write_text_whole(folder / name, matrix(2.0));
+        CHECK(contains(said({name}, spaced()), "names such as normal_3mm.csv and normal_2.5mm.csv"));
+    }
     CHECK(contains(said({"mN_4mm.csv"}, spaced()), "--force-unit mN"));
     CHECK(contains(said({"empty_4mm.csv"}, spaced()), "no number: all cells are empty"));
     CHECK(contains(said({"d_2mm.png"}, spaced()),

@@ -116,6 +116,9 @@ TEST_CASE("replacements: who replaces a dropout gets that place in the plan, and
     add_replacement(log, {"02", "21", "felt unwell"});
     CHECK(progress_of(log, protocol, "21").plan.number == 2);
     CHECK(progress_of(log, protocol, "04").plan.number == 4);
+    // nobody has begun in that place yet, so that what is missing of it is still 02's
+    CHECK(contains(report_markdown(make_report(read_study(log), {})),
+                   "Of 6 planned tests 5 are finished and 1 is missing"));
     take_part(log, protocol, "21", 2);
     CHECK(progress_of(log, protocol, "04").plan.number == 4);  // 21 has a line, but no number of its own
     take_part(log, protocol, "04", 2);

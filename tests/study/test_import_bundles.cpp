@@ -105,7 +105,8 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
         CHECK(contains(message, why));
         CHECK(tree(folder / "study") == before);
     };
-    refused({{run_file("01", "_events.tsv"), "other\n"}}, "nothing is overwritten");
+    const std::pair<std::string, std::string> of_study{"study.json", study_file(kProtocolSha256, "x")};
+    refused({{run_file("01", "_events.tsv"), "other\n"}, of_study}, "nothing is overwritten");
     refused({{"participants.tsv", people("sub-01\t99\tf\tright\tn/a\tn/a\tn/a\ta\n")}}, "described otherwise");
     refused({{"participants.tsv", people("../x\n")}}, "no participant");
     refused({{"participants.tsv", people("sub-03\tcut")}}, "no participant");
@@ -114,8 +115,8 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
     refused({{"study.json", "{}"}}, "study.json: protocol: found nothing");
     refused({{"protocol.json", "{ }"}}, "as in study.json");
     refused({{"../evil", "x"}}, "files[1].name");
-    const auto twice = write_bundle(folder / "twice", {{fresh, "another fresh\n"}});
-    const auto once = write_bundle(folder / "once", {{fresh, "fresh\n"}});
+    const auto twice = write_bundle(folder / "twice", {{fresh, "another fresh\n"}, of_study});
+    const auto once = write_bundle(folder / "once", {{fresh, "fresh\n"}, of_study});
     CHECK(contains(message_of([&] { import_bundles({once, twice}, folder / "study"); }), "other content than in"));
     write_text_atomically(folder / "trial", "onset\n");
     CHECK(contains(message_of([&] { import_bundles({once, folder / "trial"}, folder / "study"); }), "not valid JSON"));
@@ -230,6 +231,11 @@ TEST_CASE("import bundles: single runs that a tablet took beside a study are pas
     CHECK(fs::exists(folder / "study" / "sub-02"));
     CHECK(import_bundles({single}, folder / "study").passed_over.size() == 1);  // the folder is the study's already
     CHECK(import_bundles({single}, folder / "logs").written.size() == 2);
+    // an interrupted run has no settings
+    const auto interrupted = write_bundle(folder / "i", {{run_file("tablet2", "_events.tsv"), "e\n"}});
+    CHECK(import_bundles({interrupted, of_study}, folder / "study2").passed_over ==
+          std::vector<std::string>{interrupted.string()});
+    CHECK_FALSE(fs::exists(folder / "study2/sub-tablet2"));
 }
 
 TEST_CASE("import bundles: several people of one tablet in one file") {

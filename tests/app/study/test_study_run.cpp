@@ -534,6 +534,14 @@ TEST_CASE("study run: a withdrawal that the experimenter notes meanwhile ends th
         begin_step(run);
         CHECK(at<step::Withdrawn>(run));
     }
+    SUBCASE("while a trial that is to be repeated waits for Start") {
+        begin_step(run);
+        repeat_untouched(run);
+        std::get<step::Device>(run.step).here = true;
+        withdraw(log, "01", Withdrawal::takes_data);
+        begin_step(run);
+        CHECK(at<step::Withdrawn>(run));
+    }
     SUBCASE("during a trial, which is kept") {
         begin_step(run);
         REQUIRE(at<step::Trial>(run));
