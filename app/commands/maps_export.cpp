@@ -35,8 +35,8 @@ void add_maps_export(CLI::App& maps) {
         if (command->count("--array") > 0 && output.extension() != ".npy")
             throw files::InputError("--array: found with " + files::shown(arguments->output) +
                                     ", expected FILE.npy (other files hold all arrays)");
-        files::check_new(output);  // it may be the recording that the map was imported from
         if (output.has_extension()) files::check_output(arguments->output, {arguments->map});
+        files::check_new(output);  // it may be the recording that the map was imported from
         stiffnessmaps::export_map(stiffnessmaps::read_map(arguments->map), arguments->array, arguments->output);
     });
 }
