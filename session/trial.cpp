@@ -35,7 +35,8 @@ void add_to_path(const scene::State& state, Trial& trial) {
     const auto depth_m = static_cast<float>(state.contact.depth_m);
     if (!begins) {
         PathPoint& last = trial.path.back();
-        const double way_m = std::max((state.touch.p_m - last.p_m).norm(), double{std::abs(depth_m - last.depth_m)});
+        const double way_m =
+            std::max((state.touch.p_m - last.p_m).norm(), static_cast<double>(std::abs(depth_m - last.depth_m)));
         if (way_m < trial.path_step_m) {
             last.depth_m = std::max(last.depth_m, depth_m);
             return;
