@@ -31,17 +31,17 @@ void push_point(const PathPoint& point, Trial& trial) {
 
 // A point for each step of the way, and for each that a pen which stays goes deeper or comes up.
 void add_to_path(const scene::State& state, Trial& trial) {
-    const bool begins = !trial.pressing;
+    const bool begins = !trial.pressing || trial.moved_below;
     const auto depth_m = static_cast<float>(state.contact.depth_m);
     if (!begins) {
         PathPoint& last = trial.path.back();
-        const double way_m =
-            std::max((state.touch.p_m - last.p_m).norm(), static_cast<double>(std::abs(depth_m - last.depth_m)));
-        if (way_m < trial.path_step_m) {
+        const auto deeper_m = static_cast<double>(std::abs(depth_m - trial.path_depth_m));
+        if (std::max((state.touch.p_m - last.p_m).norm(), deeper_m) < trial.path_step_m) {
             last.depth_m = std::max(last.depth_m, depth_m);
             return;
         }
     }
+    trial.path_depth_m = depth_m;
     push_point({state.touch.p_m, depth_m, begins, static_cast<float>(clock_s(trial, trial.now_s))}, trial);
 }
 
@@ -49,9 +49,8 @@ void add_to_path(const scene::State& state, Trial& trial) {
 // the sampling rate hardly matter.
 void measure_press(const scene::State& state, double now_s, Trial& trial) {
     constexpr double kDeadBand_m = 0.5e-3;
-    if (!trial.pressing) {
-        trial.rope_m = state.touch.p_m;
-    } else {
+    if (!trial.pressing || trial.moved_below) trial.rope_m = state.touch.p_m;
+    if (trial.pressing) {
         const double dt_s = now_s - trial.pressed_at_s;
         trial.pressed_s += dt_s;
         trial.impulse_Ns += 0.5 * dt_s * (trial.pressed_N + state.touch.force_N);
@@ -92,6 +91,7 @@ void observe_press(const scene::Plan& plan, const platform::Sample& sample, cons
     study::cover(state.touch.p_m.x(), state.touch.p_m.y(), footprint_m, state.contact.depth_m, trial.coverage);
     measure_press(state, trial.now_s, trial);
     add_to_path(state, trial);
+    trial.moved_below = false;
     trial.pressing = true;
 }
 
@@ -154,7 +154,7 @@ void observe(const scene::Plan& plan, const platform::Sample& sample, const scen
     trial.began = true;
     trial.now_s = std::max(trial.now_s, sample.t_host_s);
     // the tissue moves below a pen that stays, so that the pen's way begins anew
-    if (sample.phase == platform::Phase::ui && sample.action == platform::Action::resize) end_press(trial);
+    if (sample.phase == platform::Phase::ui && sample.action == platform::Action::resize) trial.moved_below = true;
     if (sample.phase == platform::Phase::ui) return act(sample, state, trial);
     observe_press(plan, sample, state, trial);
 }

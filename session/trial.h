@@ -41,6 +41,7 @@ struct Trial {
     std::vector<Mark> marks;
     study::Coverage coverage;
     std::vector<PathPoint> path;  // at most kPathPoints; when full, every second point within a press is dropped
+    float path_depth_m = 0.0f;    // of the last point, when it was added
     double path_step_m =
         0.5e-3;               // least distance, along or in depth, between its points; doubles when the path is thinned
     bool pressing = false;    // a press is going on; it ends when the pen leaves the tissue
@@ -48,6 +49,7 @@ struct Trial {
     double pressed_s = 0.0;   // time spent pressing
     double impulse_Ns = 0.0;  // integral of the force over that time
     double max_force_N = 0.0;
+    bool moved_below = false;  // the tissue moved below the pen since the last sample: its way begins anew
     Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();  // place up to which pressed_m is counted
     double pressed_at_s = 0.0;                         // host time of the last sample that pressed
     double pressed_N = 0.0;                            // its force

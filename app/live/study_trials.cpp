@@ -55,6 +55,8 @@ void note_pen(const App& app, StudyRun& run) {
     run.pen = on_tissue ? pen_verdict(due_condition(run).modality, reads_pressure(due_scene(run)), app.notices.devices,
                                       app.notices.devices_listed, app.pressure)
                         : PenVerdict::not_needed;
+    if (run.pen == PenVerdict::ready) run.pen_must_vary = false;
+    if (run.pen == PenVerdict::untried && run.pen_must_vary) run.pen = PenVerdict::no_pressure;
 }
 
 // A trial begins only with its device, and a pen's trial only with a pen that measures pressure.
@@ -146,6 +148,7 @@ bool repeat_if_pen_unproven(platform::Window& window, App& app) {
     StudyRun& run = *study_of(app.doing);
     note_pen(app, run);
     if (run.pen == PenVerdict::ready || run.pen == PenVerdict::not_needed) return false;
+    run.pen_must_vary = true;
     interrupt_study_trial(Interruption::no_pressure, window, app);
     return true;
 }

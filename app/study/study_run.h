@@ -42,6 +42,7 @@ struct StudyRun {
     double choices_began_s = 0.0;
     // For a keeper (session/keeper.h): what it has not been given yet, and what it reports.
     bool on_tablet = false;
+    bool pen_must_vary = false;                // a trial has ended because its pen always sent the same
     PenVerdict pen = PenVerdict::not_needed;   // of the due trial; set by the loop
     std::string devices_note;                  // why arm and pins of the due trial do not run; set by the loop
     int first_run = 1;                         // first run number of the log that may be free

@@ -184,11 +184,11 @@ TEST_CASE("trial: a press that is held when the trial is finished, or its window
         person.sample(Phase::down, 40.0, 40.0, 0.5);
         const double held_N = person.session.state.touch.force_N;
         person.t_s += 4.0;
-        if (resized) person.make_window_small();
-        if (!resized) person.sample(Phase::ui, 40.0, 40.0, kMissing, Action::finish);
+        if (resized) person.make_window_small();  // and the pen stays
+        person.sample(Phase::ui, 40.0, 40.0, kMissing, Action::finish);
         const Trial& trial = person.session.trial;
-        CHECK(trial.pressed_s == close_to(4.01));
-        CHECK(trial.impulse_Ns == close_to(4.01 * held_N));
+        CHECK(trial.pressed_s == close_to(resized ? 4.02 : 4.01));
+        CHECK(trial.impulse_Ns == close_to(trial.pressed_s * held_N));
     }
 }
 
@@ -389,6 +389,16 @@ TEST_CASE("trial: the path knows how deep a pen that stays was at each time, and
     CHECK(deep->depth_m > 2.0f * light_m);
     CHECK(deep->t_s == close_to(2.02).epsilon(0.01));
     CHECK(path.back().t_s - deep->t_s == close_to(3.01).epsilon(0.01));
+}
+
+TEST_CASE("trial: the path of a pen that stays and goes deeper by little at a time is deep when it was") {
+    Trainee person;
+    person.sample(Phase::down, 40.0, 40.0, 0.05);
+    for (int i = 0; i <= 200; ++i) person.sample(Phase::move, 40.0, 40.0, 0.05 + 0.004 * i);
+    const std::vector<PathPoint>& path = person.session.trial.path;
+    REQUIRE(path.size() > 8);
+    for (std::size_t i = 1; i < path.size(); ++i) CHECK(path[i].depth_m < path[i - 1].depth_m + 1e-3f);
+    CHECK(path.front().depth_m < 1.5e-3f);
 }
 
 TEST_CASE("trial: points of the path know when they were pressed") {
