@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "files/input_error.h"
@@ -98,29 +97,6 @@ Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, Lev
                            "points that determine it (more levels, or another model)");
 }
 
-// A curve through all points, pressing and releasing together, and how far they lie from it.
-struct Rough {
-    std::optional<Curve> curve;
-    double scatter = std::numeric_limits<double>::infinity();  // mean |ln(F / curve)|
-};
-
-Rough rough_of(const CalibrationRows& rows, LevelRange range) {
-    const FitPoints points = rising_points(rows, range, ends_of(rows, range));
-    Rough out;
-    out.curve = fit_cubic(points, cubic_bins(points, 24));
-    if (!out.curve) return out;
-    double sum = 0.0;
-    int n = 0;
-    for (Eigen::Index i = 0; i < points.level.size(); ++i) {
-        const double expected_N = value_N(*out.curve, points.level(i));
-        if (!(points.force_N(i) > 0.0 && expected_N > 0.0)) continue;
-        sum += std::abs(std::log(points.force_N(i) / expected_N));
-        ++n;
-    }
-    if (n > 0) out.scatter = sum / n;
-    return out;
-}
-
 }  // namespace
 
 void check_level(LevelField level, const LevelRange& range, const std::string& file) {
@@ -141,18 +117,8 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
     const LevelRange range = options.range.value_or(level_range_of(measured.level));
     CalibrationRows rows = measured;
     if (options.remove_lag && !rows.time_s.empty()) {
-        if (const auto curve = rough_of(rows, range).curve) out.lag_s = lag_s(rows, *curve, range);
-        if (out.lag_s) {
-            CalibrationRows shifted = without_lag(rows, *out.lag_s);
-            // whichever leaves less scatter made the loop: time or direction
-            const auto loop = hysteresis_of(rows, range);
-            const double by_direction =
-                rough_of(loop ? without_loop(rows, loop->median_relative) : rows, range).scatter;
-            if (rough_of(shifted, range).scatter < by_direction)
-                rows = std::move(shifted);
-            else
-                out.lag_s.reset();
-        }
+        out.lag_s = lag_s(rows, range);
+        if (out.lag_s) rows = without_lag(rows, *out.lag_s);
     }
     out.ends = ends_of(rows, range);
     out.points = rising_points(rows, range, out.ends);

@@ -1,5 +1,6 @@
 #include "calibration/dynamics.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,7 +12,7 @@
 namespace palpa::calibration {
 namespace {
 
-// Rows [from, to) of one repeat, sampled without a gap.
+// Rows [from, to), sampled without a gap.
 struct Run {
     std::size_t from;
     std::size_t to;
@@ -30,10 +31,9 @@ std::vector<Run> runs_of(const CalibrationRows& rows, double step_s) {
     std::size_t from = 0;
     for (std::size_t i = 1; i <= rows.time_s.size(); ++i) {
         const bool end = i == rows.time_s.size();
-        const bool other = !end && !rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1];
         const bool gap =
             !end && !(rows.time_s[i] - rows.time_s[i - 1] < 5.0 * step_s && rows.time_s[i] > rows.time_s[i - 1]);
-        if (!end && !other && !gap) continue;
+        if (!end && !gap) continue;
         if (i - from >= 2) runs.push_back({from, i});
         from = i;
     }
@@ -49,30 +49,6 @@ double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::si
     if (t_s < rows.time_s[at] || t_s > rows.time_s[at + 1]) return platform::kMissing;
     const double share = (t_s - rows.time_s[at]) / (rows.time_s[at + 1] - rows.time_s[at]);
     return value[at] + share * (value[at + 1] - value[at]);
-}
-
-// Returns the correlation at one lag, over the samples that have a partner at every lag that is tried; NaN if there are
-// too few.
-double correlation(const CalibrationRows& rows, const std::vector<Run>& runs, const std::vector<double>& expected_level,
-                   double tau_s, double most_s) {
-    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
-    for (const Run& run : runs) {
-        std::size_t at = run.from;
-        for (std::size_t i = run.from; i < run.to; ++i) {
-            const double t_s = rows.time_s[i];
-            if (t_s - most_s < rows.time_s[run.from] || t_s + most_s > rows.time_s[run.to - 1]) continue;
-            const double other = force_at(rows, run, t_s - tau_s, at, expected_level);
-            n += 1.0;
-            x += rows.level[i];
-            y += other;
-            xx += rows.level[i] * rows.level[i];
-            yy += other * other;
-            xy += rows.level[i] * other;
-        }
-    }
-    if (n < 20.0) return platform::kMissing;
-    const double spread = (xx - x * x / n) * (yy - y * y / n);
-    return spread > 0.0 ? (xy - x * y / n) / std::sqrt(spread) : platform::kMissing;
 }
 
 // Returns +1 for pressing, -1 for releasing, 0 for neither: whether the force rises or falls by 0.5 % of its range from
@@ -107,37 +83,93 @@ CalibrationRows only(const CalibrationRows& rows, const std::vector<int>& direct
     return out;
 }
 
+// What a lag is looked for in: the rows, with the times at which each force is known at every lag that is tried.
+struct LagSearch {
+    const CalibrationRows& rows;
+    std::vector<Run> runs;
+    std::vector<double> log_force;  // ln F, NaN where F is too small against the sensor's noise
+    std::vector<double> direction;  // +1 pressing, -1 releasing
+    LevelRange range;
+    double most_s = 0.0;
+};
+
+LagSearch lag_search(const CalibrationRows& rows, const std::vector<int>& direction, std::vector<Run> runs,
+                     LevelRange range) {
+    constexpr double kMost_s = 0.5, kLeastOfFull = 0.02;
+    LagSearch out{rows, std::move(runs), {}, {direction.begin(), direction.end()}, range, 0.0};
+    const double least_N = kLeastOfFull * *std::max_element(rows.force_N.begin(), rows.force_N.end());
+    for (const double force_N : rows.force_N)
+        out.log_force.push_back(force_N > least_N ? std::log(force_N) : platform::kMissing);
+    double longest_s = 0.0;
+    for (const Run& run : out.runs) longest_s = std::max(longest_s, rows.time_s[run.to - 1] - rows.time_s[run.from]);
+    out.most_s = std::min(kMost_s, 0.2 * longest_s);
+    return out;
+}
+
+// Returns how much of the variance of ln F is left by ln F(t - tau) = g(level(t)) + d s / 2, with g linear between knots, s the
+// hysteresis' share of the force and d its direction then; NaN with too few rows.
+double misfit_at(const LagSearch& search, double tau_s) {
+    constexpr Eigen::Index kKnots = 24;
+    const CalibrationRows& rows = search.rows;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kKnots + 1, kKnots + 1);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(kKnots + 1);
+    double n = 0.0, sum = 0.0, squares = 0.0;
+    for (const Run& run : search.runs) {
+        std::size_t at = run.from, at_direction = run.from;
+        for (std::size_t i = run.from; i < run.to; ++i) {
+            const double t_s = rows.time_s[i];
+            if (t_s - search.most_s < rows.time_s[run.from] || t_s + search.most_s > rows.time_s[run.to - 1]) continue;
+            if (rows.level[i] <= search.range.lowest || rows.level[i] >= search.range.highest) continue;
+            const double y = force_at(rows, run, t_s - tau_s, at, search.log_force);
+            const double d = force_at(rows, run, t_s - tau_s, at_direction, search.direction);
+            if (std::isnan(y) || std::abs(d) < 1.0) continue;  // turns round, or rests
+            const double place = (rows.level[i] - search.range.lowest) / (search.range.highest - search.range.lowest) *
+                                 static_cast<double>(kKnots - 1);
+            const auto k = std::min(static_cast<Eigen::Index>(place), kKnots - 2);
+            const double share = place - static_cast<double>(k);
+            const Eigen::Index index[3] = {k, k + 1, kKnots};
+            const double basis[3] = {1.0 - share, share, 0.5 * d};
+            for (int p = 0; p < 3; ++p) {
+                b(index[p]) += basis[p] * y;
+                for (int q = 0; q < 3; ++q) A(index[p], index[q]) += basis[p] * basis[q];
+            }
+            n += 1.0;
+            sum += y;
+            squares += y * y;
+        }
+    }
+    if (n < 40.0) return platform::kMissing;
+    A.diagonal().array() += 1e-9 * n;  // knots without rows
+    const Eigen::VectorXd x = A.ldlt().solve(b);
+    const double left = squares - 2.0 * x.dot(b) + x.dot(A * x), all = squares - sum * sum / n;
+    return all > 0.0 ? std::max(0.0, left) / all : platform::kMissing;
+}
+
 }  // namespace
 
-std::optional<double> lag_s(const CalibrationRows& rows, const Curve& curve, LevelRange range) {
+std::optional<double> lag_s(const CalibrationRows& rows, LevelRange range) {
     if (rows.time_s.size() < 40) return std::nullopt;
     const auto direction = directions(rows);
     const auto releasing = std::count(direction.begin(), direction.end(), -1);
     const auto pressing = std::count(direction.begin(), direction.end(), 1);
     if (std::min(releasing, pressing) < 15) return std::nullopt;
     const double step_s = median_step_s(rows);
-    constexpr double kMost_s = 0.5;
     if (step_s > 0.1) return std::nullopt;  // captured point by point
-    const auto runs = runs_of(rows, step_s);
-    std::vector<double> expected(rows.level.size());
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        expected[i] = std::clamp(level_at(curve, rows.force_N[i]), range.lowest, range.highest);
-
-    constexpr int kHalf = 100;  // steps of 5 ms to each side; a parabola then refines the best
-    double best_s = 0.0;
-    double width_s = kMost_s / kHalf;
-    double best = -2.0;
+    const LagSearch search = lag_search(rows, direction, runs_of(rows, step_s), range);
+    constexpr int kHalf = 100;  // steps to each side; a parabola then refines the best
+    const double width_s = search.most_s / kHalf;
+    int best = 0;
+    std::vector<double> misfit;
     for (int i = -kHalf; i <= kHalf; ++i) {
-        const double r = correlation(rows, runs, expected, i * width_s, kMost_s);
-        if (!(r > best)) continue;
-        best = r;
-        best_s = i * width_s;
+        misfit.push_back(misfit_at(search, i * width_s));
+        if (std::isnan(misfit.back())) return std::nullopt;
+        if (misfit.back() < misfit[static_cast<std::size_t>(best)]) best = i + kHalf;
     }
-    if (best < 0.5 || std::abs(best_s) > kMost_s - 1.5 * width_s) return std::nullopt;
-    const double left = correlation(rows, runs, expected, best_s - width_s, kMost_s);
-    const double right = correlation(rows, runs, expected, best_s + width_s, kMost_s);
-    const double bend = left - 2.0 * best + right;
-    return bend < 0.0 ? best_s + 0.5 * width_s * (left - right) / bend : best_s;
+    constexpr double kMostLeft = 0.75;  // of the variance of ln F
+    if (best < 2 || best > 2 * kHalf - 2 || misfit[static_cast<std::size_t>(best)] > kMostLeft) return std::nullopt;
+    const auto at = misfit.begin() + best;
+    const double bend = at[-1] - 2.0 * at[0] + at[1];
+    return width_s * (best - kHalf + (bend > 0.0 ? 0.5 * (at[-1] - at[1]) / bend : 0.0));
 }
 
 CalibrationRows without_lag(const CalibrationRows& rows, double lag) {
@@ -188,13 +220,6 @@ std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange 
         out.at_level = level;
     }
     out.median_relative = files::median(relative);
-    return out;
-}
-
-CalibrationRows without_loop(const CalibrationRows& rows, double relative) {
-    CalibrationRows out = rows;
-    const std::vector<int> direction = directions(rows);
-    for (std::size_t i = 0; i < direction.size(); ++i) out.force_N[i] /= 1.0 + 0.5 * relative * direction[i];
     return out;
 }
 

@@ -10,15 +10,15 @@
 
 namespace palpa::calibration {
 
-// Returns the lag of the pen's level behind the sensor's force, seconds: level(t) = g(F(t - lag)). It maximises the
-// correlation between the level and the level g that `curve` gives for the shifted force:
+// Returns the lag of the pen's level behind the sensor's force, seconds, found together with the hysteresis' share s of the
+// force: it leaves least of the variance of
 //
-//   lag = argmax over tau of corr( level(t_i), g(F(t_i - tau)) ),   |tau| <= 0.5 s, the peak by a parabola
+//   ln F(t - lag) = g(level(t)) + d s / 2,   |lag| <= 0.5 s and a fifth of the longest press,
 //
-// Returns nothing if it cannot be determined: no times, no release (a steady ramp fits any lag), too few samples, or a
-// maximum at the edge. Hysteresis that depends on direction alone, not on speed, looks like a lag here; calibrate() removes
-// only a lag that explains the loop better than hysteresis does.
-std::optional<double> lag_s(const CalibrationRows& rows, const Curve& curve, LevelRange range);
+// with any g of the level and d = +1 pressing, -1 releasing. Returns nothing if it cannot be determined: no times, no release
+// (a steady ramp fits any lag), too few samples, or an end of the search. A loop whose share of the force varies along the
+// press looks like a lag where all presses have one speed.
+std::optional<double> lag_s(const CalibrationRows& rows, LevelRange range);
 
 // Returns the rows with the force that acted when the level was formed, F(t - lag), linear between samples. Rows at the
 // ends of a press for which there is none are left out.
@@ -31,9 +31,6 @@ struct Hysteresis {
 };
 // Returns nothing unless both directions occur, by the phases or, without them, by the times.
 std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange range);
-
-// Returns the rows with a loop of this size taken out: half of it from the forces of pressing, half added to those of releasing.
-CalibrationRows without_loop(const CalibrationRows& rows, double relative);
 
 struct Drift {
     std::vector<double> repeat_offset;  // of each repeat: median of F measured / F curve - 1

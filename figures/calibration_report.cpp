@@ -132,7 +132,9 @@ void print_calibration(const calibration::Calibration& calibration) {
     if (!std::isnan(calibration.ends.saturation_N))
         std::printf(", saturated from %s N", text(calibration.ends.saturation_N).c_str());
     std::printf("\n");
-    if (calibration.lag_s)
+    constexpr double kShown_s = 1e-3;  // finer than a lag is found
+    if (calibration.lag_s && std::abs(*calibration.lag_s) < kShown_s) std::printf("  lag         below 1 ms\n");
+    if (calibration.lag_s && std::abs(*calibration.lag_s) >= kShown_s)
         std::printf("  lag         the pen is %s ms behind the sensor (removed)\n",
                     text(1e3 * *calibration.lag_s).c_str());
     if (const auto& hysteresis = calibration.hysteresis) {

@@ -21,10 +21,11 @@
 namespace palpa::app {
 namespace {
 
-// Reads one number per line as it arrives; a level of 0 means that the pen does not touch.
+// Reads one number per line as it arrives; a level of 0 means that the pen does not touch. The samples have it in the field that
+// the profile reads.
 class LevelStream : public LevelSource {
   public:
-    explicit LevelStream(const std::string& path) : path_(path) {
+    LevelStream(const std::string& path, const calibration::Profile& profile) : path_(path), profile_(profile) {
         fd_ = path == "-" ? ::dup(0)
                           : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // a pipe may have no writer yet
         if (fd_ < 0) throw files::InputError(path + ": cannot be read: " + std::strerror(errno));
@@ -74,10 +75,15 @@ class LevelStream : public LevelSource {
         sample.phase = level > 0.0 ? platform::Phase::move : platform::Phase::hover;
         sample.pressure = level;
         sample.pressure_raw = level;
+        if (profile_.level == calibration::LevelField::contact_area) {
+            calibration::set_level(profile_, level, sample);
+            sample.tool = platform::Tool::finger;
+        }
         return sample;
     }
 
     std::string path_;
+    const calibration::Profile& profile_;
     std::string text_;
     std::size_t line_ = 0;
     int fd_ = -1;
@@ -122,7 +128,9 @@ class LevelWindow : public LevelSource {
 
 }  // namespace
 
-std::unique_ptr<LevelSource> open_level_stream(const std::string& path) { return std::make_unique<LevelStream>(path); }
+std::unique_ptr<LevelSource> open_level_stream(const std::string& path, const calibration::Profile& profile) {
+    return std::make_unique<LevelStream>(path, profile);
+}
 
 std::unique_ptr<LevelSource> open_level_window() {
     try {

@@ -96,7 +96,7 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
         throw files::bad_input("--levels", "", "-", "a file or pipe: standard input is for the typed numbers");
     }
     const std::unique_ptr<LevelSource> source =
-        arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels);
+        arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels, arguments.level);
     const std::unique_ptr<calibration::Recording> recording = calibration::open_recording(arguments);
     const Interrupt interrupt;
     std::string typed;

@@ -21,7 +21,8 @@ class LevelSource {
     // Shows what to press next; only a window does anything here.
     virtual void show(calibration::Recording&) {}
 };
-std::unique_ptr<LevelSource> open_level_stream(const std::string& path);  // level in Sample::pressure
+// Levels as text, put into the field of the samples that `profile` reads; it must outlive the source.
+std::unique_ptr<LevelSource> open_level_stream(const std::string& path, const calibration::Profile& profile);
 std::unique_ptr<LevelSource> open_level_window();
 
 // Runs the session and returns its result. Throws std::runtime_error if the sensor gives nothing.

@@ -124,14 +124,30 @@ TEST_CASE("calibrate: the lag between pen and sensor is found and removed") {
     CHECK_FALSE(calibrate(ramp, {}).lag_s);
 }
 
-TEST_CASE("calibrate: a loop by direction alone is no lag, and is not removed as one") {
+TEST_CASE(
+    "calibrate: lag and hysteresis are told apart, each alone and both at once, in long presses and in short ones") {
     std::mt19937_64 random(kSeed);
-    for (const double loop : {0.05, 0.1, 0.2}) {
-        CAPTURE(loop);
-        const Calibration calibration = calibrate(waves(0.0, loop, random), {});
-        CHECK_FALSE(calibration.lag_s);
-        REQUIRE(calibration.hysteresis);
-        CHECK(calibration.hysteresis->median_relative == close_to(loop / (1.0 + 0.5 * loop)).epsilon(0.15));
+    for (const double lag : {0.0, 0.02, 0.06, 0.1}) {
+        for (const double loop : {0.0, 0.05, 0.2}) {
+            for (const bool gaps : {false, true}) {
+                CAPTURE(lag);
+                CAPTURE(loop);
+                CAPTURE(gaps);
+                CalibrationRows rows = waves(lag, loop, random);
+                for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
+                    const auto press = static_cast<int>(rows.time_s[i] / 4.0);
+                    rows.repeat.push_back(press);
+                    if (gaps) rows.time_s[i] += 3.0 * press;  // each press by itself
+                }
+                CalibrateOptions options;
+                options.bootstrap_fits = 0;
+                const Calibration calibration = calibrate(rows, options);
+                REQUIRE(calibration.lag_s);
+                CHECK(std::abs(*calibration.lag_s - lag) < 3e-3);
+                REQUIRE(calibration.hysteresis);
+                CHECK(std::abs(calibration.hysteresis->median_relative - loop / (1.0 + 0.5 * loop)) < 0.02);
+            }
+        }
     }
 }
 

@@ -118,20 +118,23 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
 }
 
 TEST_CASE("record: what a scale shows is typed in while the pen is held still") {
-    const TemporaryFolder folder;
-    const std::string session = (folder / "s").string();
-    const std::string fifo = (folder / "levels").string();
-    // one step: the pen is held at one level for 5 of 6 seconds
-    const Called record =
-        shell("mkfifo " + fifo + "; " PALPA_PEN_SIMULATOR " --steps 1 --period-s 6 --seconds 7 >" + fifo +
-              " & (echo abc; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do sleep 0.5; echo 12; done; sleep 2) | " + kRecord +
-              "-o " + session + " --sensor typed --levels " + fifo + " --json");
-    CAPTURE(record.err);
-    REQUIRE(record.status == 0);
-    CHECK(contains(record.err, "found 'abc', expected what the scale shows"));
-    CHECK(parse_json(record.out, "stdout")["points"].get<int>() >= 1);
-    CHECK(contains(read_text(session + "/points.csv"), number_text(12 * 9.80665e-3)));
-    CHECK(contains(read_text(session + "/forces-01.tsv"), "\t" + number_text(12 * 9.80665e-3) + "\t12\n"));
+    for (const std::string field : {"pressure", "contact_area"}) {
+        CAPTURE(field);
+        const TemporaryFolder folder;
+        const std::string session = (folder / "s").string();
+        const std::string fifo = (folder / "levels").string();
+        // one step: the pen is held at one level for 5 of 6 seconds
+        const Called record =
+            shell("mkfifo " + fifo + "; " PALPA_PEN_SIMULATOR " --steps 1 --period-s 6 --seconds 7 >" + fifo +
+                  " & (echo abc; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do sleep 0.5; echo 12; done; sleep 2) | " +
+                  kRecord + "-o " + session + " --sensor typed --level " + field + " --levels " + fifo + " --json");
+        CAPTURE(record.err);
+        REQUIRE(record.status == 0);
+        CHECK(contains(record.err, "found 'abc', expected what the scale shows"));
+        CHECK(parse_json(record.out, "stdout")["points"].get<int>() >= 1);
+        CHECK(contains(read_text(session + "/points.csv"), number_text(12 * 9.80665e-3)));
+        CHECK(contains(read_text(session + "/forces-01.tsv"), "\t" + number_text(12 * 9.80665e-3) + "\t12\n"));
+    }
 }
 
 TEST_CASE("record: a pipe of levels that nobody writes into does not keep the session from its end") {
