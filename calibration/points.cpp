@@ -150,7 +150,7 @@ double activation(const CalibrationRows& rows, double lowest) {
         if (rows.level[i] > lowest) force_N = std::min(force_N, rows.force_N[i]);
     }
     first.erase(std::remove(first.begin(), first.end(), kInfinity), first.end());
-    return files::median(first);
+    return std::max(0.0, files::median(first));  // below 0: the sensor's noise
 }
 
 }  // namespace

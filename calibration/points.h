@@ -41,8 +41,8 @@ struct ReadOptions {
 // Reads a table of points. Columns: level (or pressure_norm), force_N or force_gf (if both, they must agree), optional
 // time_s, repeat, phase (press, release). If the file holds several pens or days and no repeats, sessions count as
 // repeats. Throws InputError, naming line and column, for what cannot be used: fewer than 3 distinct levels, all forces
-// equal, forces that are negative or not numbers, gram-force for newtons or the other way round, times that do not
-// rise, a sensor that stands still.
+// equal, forces that are no numbers or further below 0 than the noise of a zeroed sensor (1 % of the highest force),
+// gram-force for newtons or the other way round, times that do not rise, a sensor that stands still.
 CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions& options);
 
 // The checks of a whole table in read_points(). Throws InputError.

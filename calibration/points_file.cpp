@@ -49,12 +49,11 @@ Columns find_columns(const files::Table& table, const ReadOptions& options) {
 double force_of(const files::Table& table, const Columns& columns) {
     const std::size_t column = columns.force_N ? *columns.force_N : *columns.force_gf;
     const double given = table.finite_number(column);
-    if (given < 0.0) table.fail(column, "a force >= 0 (was the sensor zeroed?)");
     if (!columns.force_N) return given * kN_per_gf;
     if (columns.force_gf) {
         const double gf = table.finite_number(*columns.force_gf);
         // within 1 % and half a unit of the last digit that scales show
-        if (std::abs(gf * kN_per_gf - given) > 0.01 * given + 0.5 * kN_per_gf) {
+        if (std::abs(gf * kN_per_gf - given) > 0.01 * std::abs(given) + 0.5 * kN_per_gf) {
             table.fail(*columns.force_gf, files::short_number(given / kN_per_gf) + " gf, as force_N in this line says");
         }
     }
@@ -74,6 +73,21 @@ void agree(const files::Table& table, std::optional<std::size_t> column, std::st
     const auto text = table.field(*column);
     if (name.empty()) name = text;
     if (name != text) name = "several";
+}
+
+// Throws InputError for forces below 0, but for what a zeroed sensor shows at rest: noise, of at most 1 % of its highest
+// force.
+void check_zero(const CalibrationRows& rows) {
+    const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
+    const double least_N = -0.01 * std::max(highest_N, 0.0);
+    for (std::size_t i = 0; i < rows.force_N.size(); ++i) {
+        if (rows.force_N[i] >= least_N) continue;
+        const bool gf = rows.force_column == "force_gf";
+        const auto shown = [&](double force_N) { return files::short_number(gf ? force_N / kN_per_gf : force_N); };
+        throw files::bad_input(rows.file, "line " + std::to_string(rows.line[i]) + ", " + rows.force_column,
+                               "'" + shown(rows.force_N[i]) + "'",
+                               "a force >= 0, or noise down to " + shown(least_N) + " (was the sensor zeroed?)");
+    }
 }
 
 int index_of(std::map<std::string, int>& names, std::string name) {
@@ -126,6 +140,7 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
         if (rows.repeat.empty()) rows.repeat = session;
     }
     if (rows.level.empty()) throw files::bad_input(rows.file, "", "no rows", "measured points");
+    check_zero(rows);
     if (options.for_fit) check_rows(rows, options.any_force);
     return rows;
 }

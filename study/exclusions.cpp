@@ -105,12 +105,19 @@ std::vector<Exclusion> read_exclusions(const fs::path& directory) {
 
 std::vector<Replacement> read_replacements(const fs::path& directory) {
     std::vector<Replacement> out;
+    std::vector<std::string> notes;
+    const std::vector<Person> people = read_people(directory, notes);
     read_rows(replacements_file(directory), kReplacementHeader, [&](const files::Table& table) {
         const std::size_t participant = table.column("participant"), by = table.column("replaced_by");
         Replacement one{code_in(table, participant), code_in(table, by), reason_in(table)};
+        const auto earlier = std::find_if(
+            out.begin(), out.end(), [&](const Replacement& other) { return other.participant == one.participant; });
+        if (earlier != out.end()) {
+            if (is_among(people, earlier->replaced_by))
+                table.fail(participant, "each participant once: " + earlier->replaced_by + " has this place already");
+            out.erase(earlier);  // who was to come has not come
+        }
         for (const Replacement& other : out) {
-            if (other.participant == one.participant)
-                table.fail(participant, "each participant once: " + other.replaced_by + " has this place already");
             if (other.replaced_by == one.replaced_by) table.fail(by, "a participant who replaces nobody else");
         }
         if (one.participant == one.replaced_by) table.fail(by, "another participant");
@@ -159,12 +166,12 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
         throw files::bad_input("--by", "", files::shown(replacement.replaced_by),
                                "a code that is not yet" + among + ": who has begun keeps the place in the plan");
     for (const Replacement& other : read_replacements(directory)) {
-        if (other.participant == replacement.participant)
+        if (other.participant == replacement.participant && is_among(people, other.replaced_by))
             throw files::bad_input("--participant", "", files::shown(other.participant),
-                                   "somebody whose place is free: " + other.replaced_by + " has it");
+                                   "somebody whose place is free: " + other.replaced_by + " has begun in it");
         if (other.replaced_by == replacement.replaced_by)
             throw files::bad_input("--by", "", files::shown(other.replaced_by),
-                                   "another code: this one replaces " + other.participant);
+                                   "another code: this one replaces " + other.participant + " already");
     }
     append_line(replacements_file(directory), kReplacementHeader,
                 replacement.participant + "\t" + replacement.replaced_by + "\t" + reason);

@@ -28,7 +28,8 @@ struct Replacement {
 };
 
 // Read the two tables; nothing if there is no such file. Throw InputError with the line for other columns, a code, number
-// or reason that is none, a line that is there twice, and a participant who is replaced twice or by two.
+// or reason that is none, a line that is there twice, a participant who replaces two, and a second replacement of somebody
+// whose place another participant has begun to take. Before that the last line counts: who was to come may not have come.
 std::vector<Exclusion> read_exclusions(const std::filesystem::path& directory);
 std::vector<Replacement> read_replacements(const std::filesystem::path& directory);
 
@@ -36,7 +37,8 @@ std::vector<Replacement> read_replacements(const std::filesystem::path& director
 std::string replaced_by(const std::filesystem::path& directory, const std::string& code);
 
 // Append a line, which is on the disk when they return. Throw InputError, and write nothing, if it cannot be: the folder is
-// no study, the participant is not in participants.tsv, it was decided already, or the new participant has begun.
+// no study, the participant is not in participants.tsv, it was decided already (a replacement who has not begun may be replaced
+// by another), or the new participant has begun.
 void add_exclusion(const std::filesystem::path& directory, const Exclusion& exclusion);
 void add_replacement(const std::filesystem::path& directory, const Replacement& replacement);
 

@@ -15,6 +15,7 @@
 #include "study/bundle.h"
 #include "study/dataset.h"
 #include "study/names.h"
+#include "study/run_log.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
 #include "study/withdrawal.h"
@@ -46,6 +47,20 @@ bool is_single_run(const Bundle& bundle) {
 // True if `text` holds all of `other`: files of answers grow only at their end.
 bool begins_with(const std::string& text, const std::string& other) {
     return text.compare(0, other.size(), other) == 0;
+}
+
+bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") != std::string::npos; }
+
+// Returns the trial that a run of palpation finished; 0 if it was interrupted, or if its events cannot be read: the
+// analysis will say so, and the tablets' logs are kept all the same.
+int finished_trial(const std::string& events_text, const std::string& name) {
+    std::vector<std::string> notes;
+    try {
+        const RunLog run = run_in(events_text, name, notes);
+        return run.finished ? run.trial : 0;
+    } catch (const files::InputError&) {
+        return 0;
+    }
 }
 
 // The rows of a withdrawal, each with its end, and the text without them. A desk may note what a tablet does not know of, and
@@ -105,8 +120,14 @@ class Plan {
             throw files::bad_input(from, file.name, "other content than in " + it->second.second,
                                    "the same, or another name");
         }
-        if (fresh && !is_there(file, from)) new_.insert(file.name);
-        if (fresh && new_.count(file.name) == 0) report.already_there.push_back(file.name);
+        if (!fresh) return;
+        if (is_there(file, from)) {
+            report.already_there.push_back(file.name);
+            return;
+        }
+        new_.insert(file.name);
+        const int trial = is_events(file) ? finished_trial(file.text, file.name) : 0;
+        if (trial > 0) finished_.push_back({trial, file.name, from});
     }
 
     bool is_new(const BundleFile& file, const std::string& from) const {
@@ -124,6 +145,28 @@ class Plan {
             if (!identity_ || identity_->sha256 == sha256) continue;
             throw files::bad_input(from, "protocol.json", "sha256 " + files::shown(sha256.substr(0, 12)),
                                    files::shown(identity_->sha256.substr(0, 12)) + " as in study.json");
+        }
+    }
+
+    // To be called once all bundles are added: two tablets on which one participant did the same trial, each in its own
+    // way, would keep the whole study from its analysis.
+    void check_trials() const {
+        if (!is_study()) return;
+        std::map<std::pair<std::string, int>, std::string> done;  // by participant's folder and trial
+        std::set<std::string> read;
+        for (const Finished& one : finished_) {
+            const std::string subject = one.name.substr(0, one.name.find('/'));
+            if (read.insert(subject).second) {
+                for (const fs::path& events : events_files(directory_ / subject)) {
+                    const int trial = finished_trial(files::read_text(events), events.string());
+                    if (trial > 0) done.emplace(std::pair(subject, trial), events.string());
+                }
+            }
+            const auto [it, fresh] = done.emplace(std::pair(subject, one.trial), one.from + ": " + one.name);
+            if (fresh) continue;
+            throw files::bad_input(one.from, one.name,
+                                   "trial " + std::to_string(one.trial) + " of " + subject + " finished a second time",
+                                   "each trial of a participant once: it is in " + it->second + " too");
         }
     }
 
@@ -256,7 +299,14 @@ class Plan {
         }
     }
 
+    struct Finished {  // a trial that is new to the folder
+        int trial;
+        std::string name;
+        std::string from;
+    };
+
     fs::path directory_;
+    std::vector<Finished> finished_;
     std::map<std::string, std::pair<std::string, std::string>> first_;  // name to hash and the bundle it came from
     std::set<std::string> new_;
     std::map<std::string, std::string> protocols_;  // hash to the bundle that it came from
@@ -299,8 +349,6 @@ class NewFiles {
     std::set<fs::path> folders_;
 };
 
-bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") != std::string::npos; }
-
 // A protocol that cannot be read is refused by the analysis, with its key; the tablets' logs are kept all the same.
 void describe_study(const fs::path& directory, const Plan& plan) {
     if (!plan.is_study() || !fs::exists(directory / "protocol.json")) return;
@@ -334,6 +382,7 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
         taken.push_back(path);
     }
     plan.check_protocol();
+    plan.check_trials();
     plan.settle_answers();
     fs::create_directories(directory);
     if (!lock) lock.emplace(directory, kOtherWriter);

@@ -153,9 +153,12 @@ std::string_view whole_lines(std::string_view text, const std::string& file, std
 }
 
 RunLog read_run(const fs::path& events, std::vector<std::string>& notes) {
+    return run_in(files::read_text(events), events, notes);
+}
+
+RunLog run_in(const std::string& text, const fs::path& events, std::vector<std::string>& notes) {
     RunLog run;
     run.events = events;
-    const std::string text = files::read_text(events);
     const std::string_view whole_text = whole_lines(text, events.string(), notes);
     if (whole_text.empty()) return run;  // killed before the first line
     run.text_hash = std::hash<std::string_view>()(whole_text);

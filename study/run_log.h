@@ -51,6 +51,8 @@ struct RunLog {
 // contradict one another: a block that is neither practice nor test, a second trial in a run, anything done after finish, a
 // choice whose `correct` is not what its answer says.
 RunLog read_run(const std::filesystem::path& events, std::vector<std::string>& notes);
+// The same from the text of such a file.
+RunLog run_in(const std::string& text, const std::filesystem::path& events, std::vector<std::string>& notes);
 
 // Lists sub-XX/beh/*_events.tsv in the order of their runs. The intervals of forced choices are left out, since their
 // answers are in task-softer.

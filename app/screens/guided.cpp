@@ -66,17 +66,35 @@ std::optional<Eigen::Vector2d> target_of(const Shown& shown, GuidedStep step) {
     return Eigen::Vector2d(nodule->x_m, nodule->y_m);
 }
 
-// The text stands where it does not hide what the step is about, on a panel as high as the text needs.
-PanelArea guided_area(const Layout& layout, const std::string& text, float mm, std::optional<float> target_y_px) {
+// A panel as high as its text needs, at the tissue's lower or upper edge.
+PanelArea guided_area(const Layout& layout, const std::string& text, float mm, bool below) {
     const PanelArea& t = layout.tissue_px;
     const ImGuiStyle& style = ImGui::GetStyle();
     const float wrap_px = t.width() - 2.0f * style.WindowPadding.x;
     const float text_px = kGuidedText * ImGui::CalcTextSize(broken_at_spaces(text, wrap_px / kGuidedText).c_str()).y;
     const float height_px = std::min(0.6f * t.height(), ImGui::GetFontSize() + text_px + kTarget_mm * mm +
                                                             3.0f * style.ItemSpacing.y + 2.0f * style.WindowPadding.y);
-    const bool below = target_y_px && *target_y_px < 0.5f * (t.y0 + t.y1);
     if (below) return {t.x0, t.y1 - height_px, t.x1, t.y1};
     return {t.x0, t.y0, t.x1, t.y0 + height_px};
+}
+
+// How many nodules a panel would hide.
+std::ptrdiff_t hidden_by(const PanelArea& panel, const Shown& shown) {
+    return std::count_if(shown.plan.nodules.begin(), shown.plan.nodules.end(), [&](const auto& nodule) {
+        const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
+        return panel.holds(at.x, at.y);
+    });
+}
+
+// The text stands where it does not hide what the step is about: the target, or the nodules that the result shows.
+PanelArea guided_area(const Shown& shown, const Layout& layout, const std::string& text, float mm,
+                      const std::optional<Eigen::Vector2d>& target_m) {
+    const PanelArea above = guided_area(layout, text, mm, false), below = guided_area(layout, text, mm, true);
+    if (target_m) {
+        const PanelArea& t = layout.tissue_px;
+        return on_screen(shown.view, target_m->x(), target_m->y()).y < 0.5f * (t.y0 + t.y1) ? below : above;
+    }
+    return shown.trial.finished && hidden_by(below, shown) < hidden_by(above, shown) ? below : above;
 }
 
 void guided_title(int step) {
@@ -116,14 +134,10 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
     const bool result = shown.trial.finished;
     const GuidedStep step = guided_step(shown.plan, shown.trial);
     const std::optional<Eigen::Vector2d> target_m = result ? std::nullopt : target_of(shown, step);
-    std::optional<float> target_y_px;
-    if (target_m) {
-        draw_target(shown, *target_m, gui);
-        target_y_px = on_screen(shown.view, target_m->x(), target_m->y()).y;
-    }
+    if (target_m) draw_target(shown, *target_m, gui);
     const std::string text =
         result ? std::string(words::kGuidedResult) + "\n" + words::kGuidedEnds : std::string(text_of(step));
-    begin_panel("guided", guided_area(layout, text, gui.mm(), target_y_px), gui);
+    begin_panel("guided", guided_area(shown, layout, text, gui.mm(), target_m), gui);
     guided_title(result ? kGuidedSteps : static_cast<int>(step) + 1);
     ImGui::SetWindowFontScale(kGuidedText);
     wrapped_text(text);

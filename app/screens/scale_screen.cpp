@@ -10,16 +10,28 @@
 namespace palpa::app {
 namespace {
 
-constexpr float kCardWidth_mm = 85.60f;  // ISO/IEC 7810 ID-1
-constexpr float kCardHeight_mm = 53.98f;
+constexpr float kCardLong_mm = 85.60f;  // ISO/IEC 7810 ID-1
+constexpr float kCardShort_mm = 53.98f;
 constexpr double kLeast_px_per_mm = 1.0;
 constexpr double kMost_px_per_mm = 60.0;
 
-// Draws a ruler of 80 mm, for those without a card. `low`: its left end, below.
-void draw_ruler(const ImVec2& low, float px_per_mm, ImDrawList& draw) {
+struct CardSize {
+    float width_mm = kCardLong_mm;
+    float height_mm = kCardShort_mm;
+    int ruler_mm = 80;  // that fit into the width
+};
+
+// The card stands upright where the room for it is taller than wide, as on a phone.
+CardSize card_size(const PanelArea& area) {
+    if (area.height() > area.width()) return {kCardShort_mm, kCardLong_mm, 50};
+    return {};
+}
+
+// Draws a ruler, for those without a card. `low`: its left end, below.
+void draw_ruler(const ImVec2& low, const CardSize& card, float px_per_mm, ImDrawList& draw) {
     constexpr float kLeastTick_px = 3.0f;
     const int numbered_mm = ruler_step_mm(px_per_mm, ImGui::CalcTextSize("80").x);
-    for (int mm = 0; mm <= 80; ++mm) {
+    for (int mm = 0; mm <= card.ruler_mm; ++mm) {
         if (mm % 5 != 0 && px_per_mm < kLeastTick_px) continue;
         const float x = low.x + static_cast<float>(mm) * px_per_mm;
         const float length_px = (mm % 10 == 0 ? 5.0f : mm % 5 == 0 ? 3.5f : 2.0f) * px_per_mm;
@@ -27,7 +39,7 @@ void draw_ruler(const ImVec2& low, float px_per_mm, ImDrawList& draw) {
         if (mm % numbered_mm != 0 || mm == 0) continue;
         const std::string number = std::to_string(mm);
         const float width_px = ImGui::CalcTextSize(number.c_str()).x;
-        const float right_px = low.x + (kCardWidth_mm - 1.0f) * px_per_mm;  // of the card, with its edge free
+        const float right_px = low.x + (card.width_mm - 1.0f) * px_per_mm;  // of the card, with its edge free
         draw.AddText(
             ImVec2(std::min(x - 0.5f * width_px, right_px - width_px), low.y - 6.0f * px_per_mm - ImGui::GetFontSize()),
             kPale, number.c_str());
@@ -35,14 +47,15 @@ void draw_ruler(const ImVec2& low, float px_per_mm, ImDrawList& draw) {
 }
 
 void draw_card(const PanelArea& area, float px_per_mm) {
-    const float width_px = kCardWidth_mm * px_per_mm;
-    const float height_px = kCardHeight_mm * px_per_mm;
+    const CardSize card = card_size(area);
+    const float width_px = card.width_mm * px_per_mm;
+    const float height_px = card.height_mm * px_per_mm;
     const ImVec2 low(0.5f * (area.x0 + area.x1 - width_px), 0.5f * (area.y0 + area.y1 - height_px));
     const ImVec2 high(low.x + width_px, low.y + height_px);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddRectFilled(low, high, IM_COL32(62, 69, 75, 255), 3.18f * px_per_mm);
     draw.AddRect(low, high, kLag, 3.18f * px_per_mm, 0, 2.0f);
-    draw_ruler(ImVec2(low.x, high.y), px_per_mm, draw);
+    draw_ruler(ImVec2(low.x, high.y), card, px_per_mm, draw);
     const char* text = words::kCardSize;
     const ImVec2 text_px = ImGui::CalcTextSize(text);
     const float indent_px = 4.0f * px_per_mm;
@@ -55,7 +68,8 @@ void draw_card(const PanelArea& area, float px_per_mm) {
 // Lets the person drag the frame's left or right edge, or anything between, to the size of the card.
 void drag_card(const PanelArea& area, double& px_per_mm) {
     constexpr float kGrip = 1.4f;  // the edges can be gripped from outside
-    const auto half_px = static_cast<float>(0.5 * px_per_mm) * kCardWidth_mm;
+    const float width_mm = card_size(area).width_mm;
+    const auto half_px = static_cast<float>(0.5 * px_per_mm) * width_mm;
     const float middle_x = 0.5f * (area.x0 + area.x1);
     ImGui::SetCursorScreenPos(ImVec2(std::max(area.x0, middle_x - kGrip * half_px), area.y0));
     const float width_px = std::min(area.width(), 2.0f * kGrip * half_px);
@@ -63,7 +77,7 @@ void drag_card(const PanelArea& area, double& px_per_mm) {
     if (!ImGui::IsItemActive()) return;
     const float now_px = std::abs(ImGui::GetMousePos().x - middle_x);
     const float before_px = std::abs(ImGui::GetMousePos().x - ImGui::GetIO().MouseDelta.x - middle_x);
-    if (ImGui::IsMouseDragging(0, 0.0f)) px_per_mm += static_cast<double>(2.0f * (now_px - before_px) / kCardWidth_mm);
+    if (ImGui::IsMouseDragging(0, 0.0f)) px_per_mm += static_cast<double>(2.0f * (now_px - before_px) / width_mm);
     px_per_mm = std::clamp(px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
 }
 

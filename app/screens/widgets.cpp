@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <imgui_internal.h>
 #include <numbers>
 
@@ -206,7 +207,8 @@ std::string fixed(double value, int digits) {
     if (!std::isfinite(value)) return "-";
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, std::clamp(value, -1e12, 1e12));
-    return text;
+    const bool zero = text[std::strspn(text, "-0.")] == '\0';
+    return zero && text[0] == '-' ? text + 1 : text;  // no "-0.00"
 }
 
 void push_touchable_frame(float side_mm, const Gui& gui) {

@@ -47,8 +47,13 @@ TEST_CASE("hard case 3: every kind of bad points has a message that names it") {
                    "2 distinct levels in 4 rows, expected 3 at least"));
     CHECK(contains(refusal_of_points(head), "no rows"));
     CHECK(contains(refusal_of_points(head + "0,1\n0.5,1\n1,1\n"), "the same force, 1 N, in every row"));
-    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,-0.01\n1,2\n"),
-                   "line 3, force_N: found '-0.01', expected a force >= 0"));
+    CHECK(contains(
+        refusal_of_points(head + "0,0.1\n0.5,-0.03\n1,2\n"),
+        "line 3, force_N: found '-0.03', expected a force >= 0, or noise down to -0.02 (was the sensor zeroed?)"));
+    CHECK(
+        contains(refusal_of_points("level,force_gf\n0,10\n0.5,-30\n1,200\n"),
+                 "line 3, force_gf: found '-30', expected a force >= 0, or noise down to -2 (was the sensor zeroed?)"));
+    CHECK(refusal_of_points(head + "0,-0.01\n0.5,0.5\n1,2\n").empty());  // the noise of a sensor at rest
     CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,nan\n1,2\n"),
                    "line 3, force_N: found 'nan', expected a finite number"));
     CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,\n1,2\n"),

@@ -138,9 +138,30 @@ TEST_CASE("replacements: who replaces a dropout gets that place in the plan, and
     add_replacement(log, {"21", "22", "left too"});
     CHECK(progress_of(log, protocol, "22").plan.number == 2);
     const auto refused = [&](const Replacement& one) { return message_of([&] { add_replacement(log, one); }); };
-    CHECK(contains(refused({"02", "30", "x"}), "somebody whose place is free: 21 has it"));
+    CHECK(contains(refused({"02", "30", "x"}), "somebody whose place is free: 21 has begun in it"));
     CHECK(contains(refused({"01", "22", "x"}), "--by: found '22'"));
     CHECK(contains(refused({"01", "03", "x"}), "--by: found '03', expected a code that is not yet in"));
     CHECK(contains(refused({"09", "30", "x"}), "--participant: found '09'"));
     CHECK(contains(refused({"01", "NA", "x"}), "--by: found 'NA'"));
+}
+
+TEST_CASE("replacements: who was to take a place and never came is replaced by another; who has begun keeps it") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    take_part(log, protocol, "01", 2);
+    take_part(log, protocol, "02", 1);  // leaves
+    add_replacement(log, {"02", "21", "felt unwell"});
+    add_replacement(log, {"02", "22", "21 did not come"});
+    CHECK(replaced_by(log, "02") == "22");
+    CHECK(read_replacements(log).size() == 1);
+    CHECK(progress_of(log, protocol, "22").plan.number == 2);
+    CHECK(progress_of(log, protocol, "21").plan.number == 3);  // 21 comes after all: the next free place
+    take_part(log, protocol, "22", 2);
+    const auto refused = [&](const Replacement& one) { return message_of([&] { add_replacement(log, one); }); };
+    CHECK(contains(refused({"02", "23", "x"}), "22 has begun in it"));
+    append_synced(log / "replacements.tsv", "02\t23\tby hand\n");
+    CHECK(contains(message_of([&] { read_replacements(log); }),
+                   "line 4, participant: found '02', expected each participant "
+                   "once: 22 has this place already"));
 }

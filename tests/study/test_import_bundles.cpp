@@ -318,3 +318,37 @@ TEST_CASE("import bundles: killed in its middle, the same import goes on") {
         CHECK(tree(folder / "study").at(name) == text);
     }
 }
+
+TEST_CASE("import bundles: two tablets on which one participant did a trial are refused, in one call and in two") {
+    const TemporaryFolder folder;
+    const auto events = [](int trial, double duration_s, const char* last) {
+        return "onset\tduration\ttrial_type\ttrial\tcondition\tblock\ttp\tfp\tfn\n1\t" + short_number(duration_s) +
+               "\t" + last + "\t" + std::to_string(trial) + "\ta\ttest\t0\t0\t1\n";
+    };
+    const auto run = [](int number) {
+        return "sub-01/beh/sub-01_task-palpation_run-0" + std::to_string(number) + "_events.tsv";
+    };
+    const Texts study{{"participants.tsv", people(kAnna)}, {"study.json", study_file(kProtocolSha256, "x")}};
+    const auto bundle = [&](const std::string& name, Texts texts) {
+        texts.insert(texts.end(), study.begin(), study.end());
+        return write_bundle(folder / name, texts);
+    };
+    const auto one = bundle("one", {{run(1), events(1, 2.0, "finish")}, {run(2), events(2, 2.0, "interrupted")}});
+    const auto rest = bundle("rest", {{run(3), events(2, 3.0, "finish")}, {run(4), events(3, 3.0, "finish")}});
+    const auto other = bundle("other", {{run(5), events(1, 4.0, "finish")}});
+    const auto refused = [&](const std::vector<fs::path>& bundles, const fs::path& into) {
+        const std::string message = message_of([&] { import_bundles(bundles, into); });
+        CAPTURE(message);
+        CHECK(contains(message, "other: " + run(5) + ": found trial 1 of sub-01 finished a second time"));
+        CHECK(contains(message, run(1) + " too"));
+    };
+    refused({one, other}, folder / "study");
+    CHECK_FALSE(fs::exists(folder / "study"));
+    import_bundles({one}, folder / "study");
+    import_bundles({rest}, folder / "study");  // what was interrupted is done later
+    import_bundles({one, rest}, folder / "study");
+    const auto before = tree(folder / "study");
+    CHECK(before.count(run(4)) == 1);
+    refused({other}, folder / "study");
+    CHECK(tree(folder / "study") == before);
+}
