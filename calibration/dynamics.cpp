@@ -51,8 +51,27 @@ double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::si
     return value[at] + share * (value[at + 1] - value[at]);
 }
 
-// Returns +1 for pressing, -1 for releasing, 0 for neither: whether the force rises or falls by 0.5 % of its range from
-// `reach` samples before to `reach` samples after.
+// Returns the forces averaged over five samples with the weights 1 2 3 2 1; over three, and one, at the ends of a run. The
+// sensor's noise, interpolated between samples, is then much the same at every time, and no lag looks better for it.
+std::vector<double> smoothed_N(const CalibrationRows& rows, const std::vector<Run>& runs) {
+    std::vector<double> out = rows.force_N;
+    for (const Run& run : runs) {
+        for (std::size_t i = run.from; i < run.to; ++i) {
+            const std::size_t reach = std::min<std::size_t>({2, i - run.from, run.to - 1 - i});
+            double sum = 0.0, weights = 0.0;
+            for (std::size_t k = i - reach; k <= i + reach; ++k) {
+                const double weight = static_cast<double>(reach + 1 - (k > i ? k - i : i - k));
+                sum += weight * rows.force_N[k];
+                weights += weight;
+            }
+            out[i] = sum / weights;
+        }
+    }
+    return out;
+}
+
+// Returns +1 for pressing, -1 for releasing, 0 for neither: whether the force rises or falls by 0.5 % of its range, and more
+// than its noise, from `reach` samples before to `reach` samples after.
 std::vector<int> directions(const CalibrationRows& rows) {
     std::vector<int> direction(rows.level.size(), 0);
     if (!rows.phase.empty()) {
@@ -61,11 +80,13 @@ std::vector<int> directions(const CalibrationRows& rows) {
     }
     if (rows.time_s.empty()) return direction;
     const auto [lowest, highest] = std::minmax_element(rows.force_N.begin(), rows.force_N.end());
-    const double enough_N = 0.005 * (*highest - *lowest);
-    for (const Run& run : runs_of(rows, median_step_s(rows))) {
-        const std::size_t reach = std::clamp<std::size_t>((run.to - run.from) / 60, 1, 50);
+    const double enough_N = std::max(0.005 * (*highest - *lowest), 2.0 * noise_N(rows.force_N));
+    const std::vector<Run> runs = runs_of(rows, median_step_s(rows));
+    const std::vector<double> force_N = smoothed_N(rows, runs);
+    for (const Run& run : runs) {
+        const std::size_t reach = std::clamp<std::size_t>((run.to - run.from) / 60, 2, 50);
         for (std::size_t i = run.from + reach; i + reach < run.to; ++i) {
-            const double rise_N = rows.force_N[i + reach] - rows.force_N[i - reach];
+            const double rise_N = force_N[i + reach] - force_N[i - reach];
             direction[i] = rise_N > enough_N ? 1 : rise_N < -enough_N ? -1 : 0;
         }
     }
@@ -87,18 +108,19 @@ CalibrationRows only(const CalibrationRows& rows, const std::vector<int>& direct
 struct LagSearch {
     const CalibrationRows& rows;
     std::vector<Run> runs;
-    std::vector<double> log_force;  // ln F, NaN where F is too small against the sensor's noise
+    std::vector<double> log_force;  // ln F, smoothed; NaN where F is too small against the sensor's noise
     std::vector<double> direction;  // +1 pressing, -1 releasing
     LevelRange range;
+    double noise_N = 0.0;  // of the sensor
     double most_s = 0.0;
 };
 
 LagSearch lag_search(const CalibrationRows& rows, const std::vector<int>& direction, std::vector<Run> runs,
                      LevelRange range) {
     constexpr double kMost_s = 0.5, kLeastOfFull = 0.02;
-    LagSearch out{rows, std::move(runs), {}, {direction.begin(), direction.end()}, range, 0.0};
+    LagSearch out{rows, std::move(runs), {}, {direction.begin(), direction.end()}, range, noise_N(rows.force_N)};
     const double least_N = kLeastOfFull * *std::max_element(rows.force_N.begin(), rows.force_N.end());
-    for (const double force_N : rows.force_N)
+    for (const double force_N : smoothed_N(rows, out.runs))
         out.log_force.push_back(force_N > least_N ? std::log(force_N) : platform::kMissing);
     double longest_s = 0.0;
     for (const Run& run : out.runs) longest_s = std::max(longest_s, rows.time_s[run.to - 1] - rows.time_s[run.from]);
@@ -107,13 +129,15 @@ LagSearch lag_search(const CalibrationRows& rows, const std::vector<int>& direct
 }
 
 // Returns how much of the variance of ln F is left by ln F(t - tau) = g(level(t)) + d s / 2, with g linear between knots, s the
-// hysteresis' share of the force and d its direction then; NaN with too few rows.
+// hysteresis' share of the force and d its direction then; NaN with too few rows. Rows count by what they are worth: a light
+// force drowns in the sensor's noise.
 double misfit_at(const LagSearch& search, double tau_s) {
     constexpr Eigen::Index kKnots = 24;
+    constexpr double kRelativeNoise = 0.01;  // of pens
     const CalibrationRows& rows = search.rows;
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kKnots + 1, kKnots + 1);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(kKnots + 1);
-    double n = 0.0, sum = 0.0, squares = 0.0;
+    double n = 0.0, weights = 0.0, sum = 0.0, squares = 0.0;
     for (const Run& run : search.runs) {
         std::size_t at = run.from, at_direction = run.from;
         for (std::size_t i = run.from; i < run.to; ++i) {
@@ -129,19 +153,22 @@ double misfit_at(const LagSearch& search, double tau_s) {
             const double share = place - static_cast<double>(k);
             const Eigen::Index index[3] = {k, k + 1, kKnots};
             const double basis[3] = {1.0 - share, share, 0.5 * d};
+            const double noise = search.noise_N / std::exp(y);
+            const double weight = 1.0 / (1.0 + noise * noise / (kRelativeNoise * kRelativeNoise));
             for (int p = 0; p < 3; ++p) {
-                b(index[p]) += basis[p] * y;
-                for (int q = 0; q < 3; ++q) A(index[p], index[q]) += basis[p] * basis[q];
+                b(index[p]) += weight * basis[p] * y;
+                for (int q = 0; q < 3; ++q) A(index[p], index[q]) += weight * basis[p] * basis[q];
             }
             n += 1.0;
-            sum += y;
-            squares += y * y;
+            weights += weight;
+            sum += weight * y;
+            squares += weight * y * y;
         }
     }
     if (n < 40.0) return platform::kMissing;
-    A.diagonal().array() += 1e-9 * n;  // knots without rows
+    A.diagonal().array() += 1e-9 * weights;  // knots without rows
     const Eigen::VectorXd x = A.ldlt().solve(b);
-    const double left = squares - 2.0 * x.dot(b) + x.dot(A * x), all = squares - sum * sum / n;
+    const double left = squares - 2.0 * x.dot(b) + x.dot(A * x), all = squares - sum * sum / weights;
     return all > 0.0 ? std::max(0.0, left) / all : platform::kMissing;
 }
 
@@ -156,20 +183,22 @@ std::optional<double> lag_s(const CalibrationRows& rows, LevelRange range) {
     const double step_s = median_step_s(rows);
     if (step_s > 0.1) return std::nullopt;  // captured point by point
     const LagSearch search = lag_search(rows, direction, runs_of(rows, step_s), range);
-    constexpr int kHalf = 100;  // steps to each side; a parabola then refines the best
-    const double width_s = search.most_s / kHalf;
+    // Whole samples, so that none of the lags that are tried averages the sensor's noise; a parabola then refines the best.
+    constexpr int kMostSteps = 100;  // to each side
+    const double width_s = step_s * std::ceil(search.most_s / kMostSteps / step_s);
+    const int half = static_cast<int>(search.most_s / width_s);
     int best = 0;
     std::vector<double> misfit;
-    for (int i = -kHalf; i <= kHalf; ++i) {
+    for (int i = -half; i <= half; ++i) {
         misfit.push_back(misfit_at(search, i * width_s));
         if (std::isnan(misfit.back())) return std::nullopt;
-        if (misfit.back() < misfit[static_cast<std::size_t>(best)]) best = i + kHalf;
+        if (misfit.back() < misfit[static_cast<std::size_t>(best)]) best = i + half;
     }
     constexpr double kMostLeft = 0.75;  // of the variance of ln F
-    if (best < 2 || best > 2 * kHalf - 2 || misfit[static_cast<std::size_t>(best)] > kMostLeft) return std::nullopt;
+    if (best < 2 || best > 2 * half - 2 || misfit[static_cast<std::size_t>(best)] > kMostLeft) return std::nullopt;
     const auto at = misfit.begin() + best;
     const double bend = at[-1] - 2.0 * at[0] + at[1];
-    return width_s * (best - kHalf + (bend > 0.0 ? 0.5 * (at[-1] - at[1]) / bend : 0.0));
+    return width_s * (best - half + (bend > 0.0 ? 0.5 * (at[-1] - at[1]) / bend : 0.0));
 }
 
 CalibrationRows without_lag(const CalibrationRows& rows, double lag) {
@@ -208,13 +237,16 @@ std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange 
     const double to = std::min(press->knot_level.back(), release->knot_level.back());
     if (!(from < to)) return std::nullopt;
     Hysteresis out;
+    // of lighter forces the share is the sensor's noise
+    const double least_N = 0.05 * (value_N(*press, to) + value_N(*release, to));
     std::vector<double> relative;
     constexpr int kPlaces = 40;
     for (int i = 0; i <= kPlaces; ++i) {
         const double level = from + (to - from) * i / kPlaces;
         const double up_N = value_N(*press, level);
         const double down_N = value_N(*release, level);
-        relative.push_back((up_N - down_N) / (0.5 * (up_N + down_N)));
+        const double mean_N = 0.5 * (up_N + down_N);
+        if (mean_N >= least_N) relative.push_back((up_N - down_N) / mean_N);
         if (std::abs(up_N - down_N) <= std::abs(out.greatest_N)) continue;
         out.greatest_N = up_N - down_N;
         out.at_level = level;

@@ -15,7 +15,7 @@ namespace palpa::calibration {
 //
 //   ln F(t - lag) = g(level(t)) + d s / 2,   |lag| <= 0.5 s and a fifth of the longest press,
 //
-// with any g of the level and d = +1 pressing, -1 releasing. Returns nothing if it cannot be determined: no times, no release
+// with any g of the level and d = +1 pressing, -1 releasing, rows weighted by the sensor's noise beside F. Returns nothing if it cannot be determined: no times, no release
 // (a steady ramp fits any lag), too few samples, or an end of the search. A loop whose share of the force varies along the
 // press looks like a lag where all presses have one speed.
 std::optional<double> lag_s(const CalibrationRows& rows, LevelRange range);
@@ -25,9 +25,10 @@ std::optional<double> lag_s(const CalibrationRows& rows, LevelRange range);
 CalibrationRows without_lag(const CalibrationRows& rows, double lag_s);
 
 struct Hysteresis {
-    double median_relative = 0.0;  // (F pressing - F releasing) / F at equal levels, median over the range
-    double greatest_N = 0.0;       // F pressing - F releasing where it is greatest in size
-    double at_level = 0.0;         // where that is
+    double median_relative =
+        0.0;                  // (F pressing - F releasing) / F at equal levels, median from a tenth of the force up
+    double greatest_N = 0.0;  // F pressing - F releasing where it is greatest in size
+    double at_level = 0.0;    // where that is
 };
 // Returns nothing unless both directions occur, by the phases or, without them, by the times.
 std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange range);

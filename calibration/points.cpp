@@ -115,15 +115,6 @@ void check_running(const CalibrationRows& rows) {
     }
 }
 
-// Returns the noise of the forces near one end, given in order of level: robust, from second differences.
-double noise_N(const std::vector<double>& force_N) {
-    if (force_N.size() < 3) return 0.0;
-    std::vector<double> bends;
-    for (std::size_t i = 1; i + 1 < force_N.size(); ++i)
-        bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
-    return 1.4826 * files::median(bends) / std::sqrt(1.5);
-}
-
 // Returns the forces of the quarter of the rows next to one end (at least five), without the rows at the very end.
 std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest,
                             double highest, bool top) {
@@ -154,6 +145,14 @@ double activation(const CalibrationRows& rows, double lowest) {
 }
 
 }  // namespace
+
+double noise_N(const std::vector<double>& force_N) {
+    if (force_N.size() < 3) return 0.0;
+    std::vector<double> bends;
+    for (std::size_t i = 1; i + 1 < force_N.size(); ++i)
+        bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
+    return 1.4826 * files::median(bends) / std::sqrt(1.5);
+}
 
 void check_rows(const CalibrationRows& rows, bool any_force) {
     check_enough(rows);

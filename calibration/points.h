@@ -69,6 +69,9 @@ struct Ends {
 };
 Ends ends_of(const CalibrationRows& rows, LevelRange range);
 
+// Returns the noise (one standard deviation) of forces in order of level or time: robust, from second differences.
+double noise_N(const std::vector<double>& force_N);
+
 // Returns the points for a fit, sorted by level. A level of 0 stands for every force up to the activation force, and
 // the level at saturation for every force above: of these rows only those within the noise of that force are used.
 FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& ends);

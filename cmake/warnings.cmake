@@ -12,6 +12,10 @@ target_compile_options(palpa_flags INTERFACE -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(palpa_flags INTERFACE -fno-tree-loop-vectorize)
 endif()
+# Templates fill the compiler's memory; collected from 1 GB on, not from 128 MB, they compile in 0.9 of the time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(palpa_flags INTERFACE --param=ggc-min-heapsize=1048576)
+endif()
 # Messages of assert name files as they lie in the project, not where this machine keeps it.
 target_compile_options(palpa_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 # Sizes have 32 bits on the web: what is read as 64 is compared with what is there before it is used.

@@ -103,7 +103,7 @@ void follow_keeper(double now_s, App& app) {
         if (told) app.notices.problems.clear();  // the problem is solved
     }
     run.warnings = app.notices.problems;
-    if (at<step::Done>(run)) run.where = app.keeper->where(run.code);
+    if (at<step::Done>(run) || at<step::Withdrawn>(run)) run.where = app.keeper->where(run.code);
 }
 
 // Ratings are of a condition whose trials have just been done. Studies that have begun go on as they were.

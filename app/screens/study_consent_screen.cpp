@@ -41,8 +41,10 @@ void draw_leaving(Gui& gui, Wishes& wishes) {
 void draw_withdrawn(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::kHasWithdrawn);
     paragraph(words::filled(words::kCodeHasWithdrawn, {run.code}));
+    if (!run.where.empty()) paragraph(run.where);
     gap(gui);
     if (forward(words::kNextParticipant, gui)) wishes.study = SamePerson{false};
+    trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
 

@@ -32,14 +32,6 @@ bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextF
     return done;
 }
 
-// The experimenter's button for pairing, sending and exporting.
-void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
-    if (!run.on_tablet) return;
-    if (big_button(words::kTrialsOnTablet, "",
-                   {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
-        wishes.trials = true;
-}
-
 // The screen while the keeper stores the last step, usually for less than a frame.
 void draw_keeping(double now_s, Gui& gui, const StudyRun& run, Wishes& wishes) {
     constexpr double kSoon_s = 0.5;

@@ -34,6 +34,13 @@ void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
         wishes.quit = true;
 }
 
+void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
+    if (!run.on_tablet) return;
+    if (big_button(words::kTrialsOnTablet, "",
+                   {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
+        wishes.trials = true;
+}
+
 void stop_button(const Gui& gui, Wishes& wishes) {
     const float width_px = std::min(70.0f * gui.mm(), share_of_line_px(1));
     if (big_button(words::kWithdraw, "", {width_px, kTarget_mm, true, false}, gui)) wishes.study = WantToLeave{};

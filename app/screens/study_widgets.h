@@ -18,6 +18,9 @@ void gap(const Gui& gui);
 // The button that leaves the study. On a tablet, which has no window to close, it leads to the rest of the app.
 void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes);
 
+// The experimenter's button on a tablet for pairing, sending and exporting.
+void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes);
+
 // The button with which a participant stops taking part; it asks before.
 void stop_button(const Gui& gui, Wishes& wishes);
 

@@ -50,7 +50,7 @@ struct StudyRun {
     bool unkept_answers = false;
     std::optional<double> keeping_since_s;  // the next step waits for the keeper
     std::vector<std::string> warnings;
-    std::string where;  // where the trials of a participant who has finished are, for people
+    std::string where;  // where the trials of a participant who has finished or withdrawn are, for people
 };
 
 // Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished or is at another screen), and

@@ -351,6 +351,7 @@ const palpaTrials = (() => {
         if (!code || !asksCode) return;
         history.replaceState(null, '', location.pathname + location.search);
         await pair(code);
+        if (!isPaired()) tell(lastWord);
     };
 
     const download = (name, text) => {

@@ -57,7 +57,7 @@ TEST_CASE("fit: friction is told from the difference of pressing and releasing")
 TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     PlantOptions plant = small_plant(1.1);
     plant.lag_s = 0.05;
-    const std::vector<RecordedTick> ticks = recorded(plant);
+    const std::vector<RecordedTick> ticks = recorded(plant, 2);
     const FitResult result = fit_presses(small_strip()->device, ticks, {true, 24, {}});
     CHECK(result.settled);
     CHECK(result.fit.lag_s == close_to(0.05).epsilon(0.1));
@@ -75,7 +75,7 @@ TEST_CASE("fit: friction of cables that lag has the sense of what they do, not o
     PlantOptions plant = small_plant(0.9);
     plant.friction_share = 0.05;
     plant.lag_s = 0.03;
-    const FitResult result = fit_presses(small_strip()->device, recorded(plant), {true, 24, {}});
+    const FitResult result = fit_presses(small_strip()->device, recorded(plant, 2), {true, 24, {}});
     CHECK(result.settled);
     CHECK(result.fit.modulus_factor == close_to(0.9).epsilon(0.002));
     CHECK(result.fit.friction_share == close_to(0.05).epsilon(0.02));
@@ -83,7 +83,7 @@ TEST_CASE("fit: friction of cables that lag has the sense of what they do, not o
 }
 
 TEST_CASE("fit: a lag that is not seen has no standard error") {
-    const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.1), 2), {true, 24, {}});
+    const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.1), 4), {true, 24, {}});
     CHECK(result.fit.lag_s == 0.0);
     CHECK_FALSE(result.lag_error_s.has_value());
 }

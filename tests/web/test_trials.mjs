@@ -52,6 +52,8 @@ test('paired: trials go to the desk; one with another hash is kept and sent agai
     await page.click('#close-trials');
     await pairByDialog(page, '111111');
     assert.deepEqual(asked, ['{"code":"111111"}']);
+    await page.evaluate(() => { location.hash = 'code=222222'; }); // a square of another desk, or of yesterday
+    await until('said', async () => (await report(page)).problems.some((text) => text.includes('does not accept')));
     await finishTrial(browser);
     await until('stored', async () => (await stored(page)).length === 1);
     assert.equal(desk.logs.size, 0);

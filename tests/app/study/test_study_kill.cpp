@@ -88,7 +88,7 @@ Json results_of(const fs::path& log) {
 
 TEST_CASE("command study: killed at random moments it loses no finished trial, and ends as if nothing had happened") {
     const char* asked = std::getenv("PALPA_KILLS");
-    const int kills = asked != nullptr ? std::atoi(asked) : 20;
+    const int kills = asked != nullptr ? std::atoi(asked) : 10;
     constexpr std::uint64_t kSeed = 99;
     CAPTURE(kSeed);
     Random random(kSeed);
