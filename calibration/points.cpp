@@ -115,6 +115,50 @@ void check_running(const CalibrationRows& rows) {
     }
 }
 
+// Returns the greatest force that the rows below full level, given in order of level, can lead to at full level: by one and a
+// half times the slope of ln F over the last tenth of the range; noise, and 2 %. Infinite with too few rows.
+double most_at_full_N(const CalibrationRows& rows, const std::vector<std::size_t>& below, LevelRange range) {
+    constexpr std::size_t kFewest = 5;
+    const double from = range.highest - 0.1 * (range.highest - range.lowest);
+    std::vector<double> forces_N;
+    double sl = 0.0, sf = 0.0, sll = 0.0, slf = 0.0;
+    for (auto it = below.rbegin(); it != below.rend(); ++it) {
+        const double level = rows.level[*it], force_N = rows.force_N[*it];
+        if (!(force_N > 0.0) || (level < from && forces_N.size() >= kFewest)) break;
+        forces_N.push_back(force_N);
+        sl += level;
+        sf += std::log(force_N);
+        sll += level * level;
+        slf += level * std::log(force_N);
+    }
+    const auto n = static_cast<double>(forces_N.size());
+    const double spread = n * sll - sl * sl;
+    if (forces_N.size() < kFewest || !(spread > 1e-12 * n * sll)) return kInfinity;
+    const double slope = std::max(0.0, (n * slf - sl * sf) / spread), last = rows.level[below.back()];
+    const double ln_F = sf / n + slope * (last - sl / n) + 1.5 * slope * (range.highest - last);
+    return 1.02 * std::exp(ln_F) + 3.0 * noise_N(forces_N);
+}
+
+// Returns whether the level stays while the force rises by a quarter, and by more than noise: in most presses, where presses
+// can be told apart, since the force of a level may drift from one to the next.
+bool stays(const CalibrationRows& rows, double plateau, double noise) {
+    std::vector<std::vector<double>> presses(1);
+    for (std::size_t i = 0; i < rows.level.size(); ++i) {
+        const bool another = i > 0 && (rows.repeat.empty() ? !rows.time_s.empty() && rows.level[i] < plateau
+                                                           : rows.repeat[i] != rows.repeat[i - 1]);
+        if (another && !presses.back().empty()) presses.emplace_back();
+        if (rows.level[i] >= plateau) presses.back().push_back(rows.force_N[i]);
+    }
+    std::size_t several = 0, rising = 0;
+    for (const std::vector<double>& force_N : presses) {
+        if (force_N.size() < 3) continue;
+        const auto [lowest, highest] = std::minmax_element(force_N.begin(), force_N.end());
+        ++several;
+        rising += *highest > 1.25 * *lowest && *highest - *lowest > 6.0 * noise;
+    }
+    return several > 0 && 2 * rising > several;
+}
+
 // Returns the forces of the quarter of the rows next to one end (at least five), without the rows at the very end.
 std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest,
                             double highest, bool top) {
@@ -178,22 +222,26 @@ Ends ends_of(const CalibrationRows& rows, LevelRange range) {
     const double plateau = top >= range.highest ? range.highest : top - 0.02 * (range.highest - range.lowest);
     double lowest_N = kInfinity;
     double highest_N = 0.0;
-    std::size_t n = 0;
     for (std::size_t i = 0; i < rows.level.size(); ++i) {
         if (rows.level[i] < plateau) continue;
         lowest_N = std::min(lowest_N, rows.force_N[i]);
         highest_N = std::max(highest_N, rows.force_N[i]);
-        ++n;
     }
     const double noise = noise_N(quarter(rows, order, range.lowest, plateau, true));
     const bool full = top >= range.highest;
-    const bool still = n >= 3 && highest_N > 1.25 * lowest_N && highest_N - lowest_N > 6.0 * noise;
-    if (full || still) {
+    if (full || stays(rows, plateau, noise)) {
         ends.saturation_N = lowest_N;
         ends.saturation_level = plateau;
         ends.above_saturation_N = highest_N;
         for (std::size_t i = 0; i < rows.level.size(); ++i)
             ends.saturated += rows.level[i] >= plateau && rows.force_N[i] > lowest_N + 3.0 * noise;
+        std::vector<std::size_t> below = order;
+        std::erase_if(below, [&](std::size_t i) { return rows.level[i] >= plateau || rows.level[i] <= range.lowest; });
+        if (full && lowest_N > most_at_full_N(rows, below, range)) {
+            ends.before_saturation_N = rows.force_N[below.back()];
+            ends.saturated = 0;
+            for (const double level : rows.level) ends.saturated += level >= plateau;
+        }
     }
     double silent_N = 0.0;
     for (std::size_t i = 0; i < rows.level.size(); ++i) {
@@ -216,7 +264,8 @@ FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& 
     std::vector<std::size_t> kept;
     for (const std::size_t i : order) {
         const bool silent = rows.level[i] <= range.lowest && rows.force_N[i] < floor_N;
-        const bool saturated = rows.level[i] >= plateau && rows.force_N[i] > ceiling_N;
+        const bool saturated =
+            rows.level[i] >= plateau && (!std::isnan(ends.before_saturation_N) || rows.force_N[i] > ceiling_N);
         if (!silent && !saturated) kept.push_back(i);
     }
     FitPoints points;

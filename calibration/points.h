@@ -41,7 +41,7 @@ struct ReadOptions {
 // Reads a table of points. Columns: level (or pressure_norm), force_N or force_gf (if both, they must agree), optional
 // time_s, repeat, phase (press, release). If the file holds several pens or days and no repeats, sessions count as
 // repeats. Throws InputError, naming line and column, for what cannot be used: fewer than 3 distinct levels, all forces
-// equal, forces that are no numbers or further below 0 than the noise of a zeroed sensor (1 % of the highest force),
+// equal, forces that are no numbers or further below 0 than the noise of a zeroed sensor (five times its noise, 1 % of the highest force),
 // gram-force for newtons or the other way round, times that do not rise, a sensor that stands still.
 CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions& options);
 
@@ -64,8 +64,11 @@ struct Ends {
     double saturation_N = platform::kMissing;
     double saturation_level = platform::kMissing;
     double above_saturation_N = platform::kMissing;  // greatest force measured there
-    std::size_t silent = 0;                          // rows at level 0 with less than the greatest force at that level
-    std::size_t saturated = 0;                       // rows beyond saturation
+    // The force at the highest level below, if the lowest one at full level is far above what leads there: saturation begins
+    // somewhere between the two, and no row at full level is fitted. Else NaN.
+    double before_saturation_N = platform::kMissing;
+    std::size_t silent = 0;     // rows at level 0 with less than the greatest force at that level
+    std::size_t saturated = 0;  // rows beyond saturation
 };
 Ends ends_of(const CalibrationRows& rows, LevelRange range);
 

@@ -75,11 +75,12 @@ void agree(const files::Table& table, std::optional<std::size_t> column, std::st
     if (name != text) name = "several";
 }
 
-// Throws InputError for forces below 0, but for what a zeroed sensor shows at rest: noise, of at most 1 % of its highest
-// force.
+// Throws InputError for forces below 0, but for what a zeroed sensor shows at rest: 1 % of its highest force, or five times
+// its noise.
 void check_zero(const CalibrationRows& rows) {
     const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
-    const double least_N = -0.01 * std::max(highest_N, 0.0);
+    const double noise = rows.time_s.size() < 40 ? 0.0 : noise_N(rows.force_N);  // told by forces in the order of time
+    const double least_N = -std::max({0.01 * highest_N, 5.0 * noise, 0.0});
     for (std::size_t i = 0; i < rows.force_N.size(); ++i) {
         if (rows.force_N[i] >= least_N) continue;
         const bool gf = rows.force_column == "force_gf";

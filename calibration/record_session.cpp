@@ -157,6 +157,7 @@ int target_band(const RecordOptions& options, const RecordSession& session, cons
 
 Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedPoint>& points) {
     Knowledge out;
+    std::string jump;
     out.band_error.assign(static_cast<std::size_t>(options.bands), platform::kMissing);
     for (const CapturedPoint& point : points) out.repeats = std::max(out.repeats, point.repeat + 1);
     CalibrateOptions how;
@@ -167,6 +168,10 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
         if (rows.level.empty()) throw files::InputError("no point yet");
         check_rows(rows, true);
         const Calibration calibration = calibrate(rows, how);
+        const Ends& ends = calibration.ends;
+        if (!std::isnan(ends.before_saturation_N))
+            jump = "full level begins somewhere between " + files::short_number(ends.before_saturation_N) + " and " +
+                   files::short_number(ends.saturation_N) + " N";
         const Bootstrap& boot = calibration.bootstrap;
         if (boot.fits > 0) {
             for (int band = 0; band < options.bands; ++band) {
@@ -199,6 +204,7 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
         out.missing +=
             (out.missing.empty() ? "" : "; ") + ("not known to " + round_percent(options.goal) + ": " + places);
     out.done = out.missing.empty();
+    if (out.done) out.missing = jump;
     return out;
 }
 

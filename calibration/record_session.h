@@ -72,7 +72,7 @@ struct Knowledge {
     std::vector<double> band_error;  // half of the 95 % interval / force; NaN: not measured
     int repeats = 0;
     bool done = false;    // `goal` is met in every band, with enough repeats
-    std::string missing;  // what is not known, in plain words; empty when done
+    std::string missing;  // what is not known, in plain words; when done, where full level begins, or empty
 };
 Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedPoint>& points);
 

@@ -27,6 +27,12 @@ void about_ends(const Calibration& calibration, const Words& words, std::vector<
                                ? above + " reports no more than " + words.at(profile.fitted_highest) + " " + words.level
                                : above + " reports full " + words.level;
         out.push_back(text + ": greater forces cannot be told from it");
+        if (!std::isnan(ends.before_saturation_N)) {
+            out.push_back("full " + words.level + " begins somewhere between " +
+                          files::short_number(ends.before_saturation_N) + " and " +
+                          files::short_number(ends.saturation_N) + " N, where there is no point: the curve above " +
+                          words.at(profile.fitted_highest) + " " + words.level + " is extrapolated");
+        }
     } else if (profile.fitted_highest < words.lowest + 0.97 * words.width) {
         out.push_back("the points end at " + words.at(profile.fitted_highest) + " " + words.level + ": forces above " +
                       files::short_number(value_N(profile.curve, profile.fitted_highest)) + " N are extrapolated");

@@ -97,6 +97,11 @@ struct Scene {
     std::int64_t seed = 1;
 };
 
+// Whether an arm's motion is the input: the arm then presses, and what touches the screen only points.
+inline bool arm_leads(const Scene& scene) noexcept {
+    return scene.tactile && scene.tactile->arm && scene.tactile->leads == Leads::arm;
+}
+
 // Returns the path parameters of the scene's law, or the defaults if it has none.
 avatar::PathParameters path_of(const Scene& scene);
 

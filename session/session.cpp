@@ -302,6 +302,15 @@ bool files_good(const Session& session) {
            !(session.trial_log && session.trial_log->failed()) && !session.failed;
 }
 
+void take_device_press(const PressMoment& press, double now_s, Session& session) {
+    const Trial& trial = session.trial;
+    if (trial.finished || !trial.began || trial.paused_at_s) return;
+    observe_device(*session.plan, press, now_s, session.trial);
+    scene::Extremes& extremes = session.state.extremes;
+    extremes.force_N = std::max(extremes.force_N, press.force_N);
+    extremes.depth_m = std::max(extremes.depth_m, press.depth_m);
+}
+
 void note_time(double now_s, Session& session) {
     if (session.trial.began) session.trial.now_s = std::max(session.trial.now_s, now_s);
 }

@@ -93,6 +93,9 @@ bool files_good(const Session& session);
 // Logs an event that no sample brings, such as the loss of a device. now_s: host time, as Sample::t_host_s.
 void note_event(std::string_view trial_type, double now_s, Session& session);
 
+// Takes the press of a device that leads (scene::arm_leads) at a host time: it counts in the trial's force, way and coverage.
+void take_device_press(const PressMoment& press, double now_s, Session& session);
+
 // Moves the trial's time on where no sample does; rows that follow are not before it.
 void note_time(double now_s, Session& session);
 

@@ -30,39 +30,39 @@ void push_point(const PathPoint& point, Trial& trial) {
 }
 
 // A point for each step of the way, and for each that a pen which stays goes deeper or comes up.
-void add_to_path(const scene::State& state, Trial& trial) {
+void add_to_path(const PressMoment& press, Trial& trial) {
     const bool begins = !trial.pressing || trial.moved_below;
-    const auto depth_m = static_cast<float>(state.contact.depth_m);
+    const auto depth_m = static_cast<float>(press.depth_m);
     if (!begins) {
         PathPoint& last = trial.path.back();
         const auto deeper_m = static_cast<double>(std::abs(depth_m - trial.path_depth_m));
-        if (std::max((state.touch.p_m - last.p_m).norm(), deeper_m) < trial.path_step_m) {
+        if (std::max((press.p_m - last.p_m).norm(), deeper_m) < trial.path_step_m) {
             last.depth_m = std::max(last.depth_m, depth_m);
             return;
         }
     }
     trial.path_depth_m = depth_m;
-    push_point({state.touch.p_m, depth_m, begins, static_cast<float>(clock_s(trial, trial.now_s))}, trial);
+    push_point({press.p_m, depth_m, begins, static_cast<float>(clock_s(trial, trial.now_s))}, trial);
 }
 
 // Adds to the way and the impulse while pressing. Motion inside the dead band does not count as way, so that jitter and
 // the sampling rate hardly matter.
-void measure_press(const scene::State& state, double now_s, Trial& trial) {
+void measure_press(const PressMoment& press, double now_s, Trial& trial) {
     constexpr double kDeadBand_m = 0.5e-3;
-    if (!trial.pressing || trial.moved_below) trial.rope_m = state.touch.p_m;
+    if (!trial.pressing || trial.moved_below) trial.rope_m = press.p_m;
     if (trial.pressing) {
         const double dt_s = now_s - trial.pressed_at_s;
         trial.pressed_s += dt_s;
-        trial.impulse_Ns += 0.5 * dt_s * (trial.pressed_N + state.touch.force_N);
+        trial.impulse_Ns += 0.5 * dt_s * (trial.pressed_N + press.force_N);
     }
-    const double moved_m = (state.touch.p_m - trial.rope_m).norm();
+    const double moved_m = (press.p_m - trial.rope_m).norm();
     if (moved_m >= kDeadBand_m) {
         trial.pressed_m += moved_m;
-        trial.rope_m = state.touch.p_m;
+        trial.rope_m = press.p_m;
     }
-    trial.max_force_N = std::max(trial.max_force_N, state.touch.force_N);
+    trial.max_force_N = std::max(trial.max_force_N, press.force_N);
     trial.pressed_at_s = now_s;
-    trial.pressed_N = state.touch.force_N;
+    trial.pressed_N = press.force_N;
 }
 
 // A device that reports changes alone says nothing while a press is held: its last force lasts until it is lifted.
@@ -71,28 +71,31 @@ void end_press(Trial& trial) {
     const double held_s = trial.now_s - trial.pressed_at_s;
     trial.pressed_s += held_s;
     trial.impulse_Ns += held_s * trial.pressed_N;
-    trial.pressing = false;
+    trial.pressing = trial.by_device = false;
     PathPoint last = trial.path.back();
     last.begins = false;
     last.t_s = static_cast<float>(clock_s(trial, trial.now_s));
     if (last.t_s > trial.path.back().t_s) push_point(last, trial);  // until then it was held
 }
 
+void take_press(const scene::Plan& plan, const PressMoment& press, Trial& trial) {
+    const double R_m = plan.indenter_radius_m;
+    const double footprint_m = std::sqrt(R_m * std::min(press.depth_m, R_m));  // contact radius by Hertz
+    study::cover(press.p_m.x(), press.p_m.y(), footprint_m, press.depth_m, trial.coverage);
+    measure_press(press, trial.now_s, trial);
+    add_to_path(press, trial);
+    trial.moved_below = false;
+    trial.pressing = true;
+}
+
 void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
     if (!state.answered) return;  // another pointer's sample, or one from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
-    if (!pressing) end_press(trial);
+    if (!pressing && !trial.by_device) end_press(trial);
     if (!state.touch.down) return;
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
     if (!trial.touched_s) trial.touched_s = trial.now_s;
-    if (!pressing) return;
-    const double R_m = plan.indenter_radius_m;
-    const double footprint_m = std::sqrt(R_m * std::min(state.contact.depth_m, R_m));  // contact radius by Hertz
-    study::cover(state.touch.p_m.x(), state.touch.p_m.y(), footprint_m, state.contact.depth_m, trial.coverage);
-    measure_press(state, trial.now_s, trial);
-    add_to_path(state, trial);
-    trial.moved_below = false;
-    trial.pressing = true;
+    if (pressing) take_press(plan, {state.touch.p_m, state.contact.depth_m, state.touch.force_N}, trial);
 }
 
 // Stops the clock, or lets it run again. A clock that has not started stays at 0.
@@ -157,6 +160,18 @@ void observe(const scene::Plan& plan, const platform::Sample& sample, const scen
     if (sample.phase == platform::Phase::ui && sample.action == platform::Action::resize) trial.moved_below = true;
     if (sample.phase == platform::Phase::ui) return act(sample, state, trial);
     observe_press(plan, sample, state, trial);
+}
+
+void observe_device(const scene::Plan& plan, const PressMoment& press, double t_host_s, Trial& trial) {
+    if (trial.finished || !trial.began) return;
+    trial.now_s = std::max(trial.now_s, t_host_s);
+    if (!(press.force_N > 0.0)) {
+        if (trial.by_device) end_press(trial);
+        return;
+    }
+    if (!trial.touched_s) trial.touched_s = trial.now_s;
+    take_press(plan, press, trial);
+    trial.by_device = true;
 }
 
 double clock_s(const Trial& trial, double now_s) {

@@ -45,6 +45,7 @@ struct Trial {
     double path_step_m =
         0.5e-3;               // least distance, along or in depth, between its points; doubles when the path is thinned
     bool pressing = false;    // a press is going on; it ends when the pen leaves the tissue
+    bool by_device = false;   // that press is of a device that leads, and the pen does not end it
     double pressed_m = 0.0;   // length of the way while pressing, without jitter
     double pressed_s = 0.0;   // time spent pressing
     double impulse_Ns = 0.0;  // integral of the force over that time
@@ -61,6 +62,15 @@ Trial make_trial(const scene::Plan& plan, TrialMode mode);
 
 // Takes one sample, after advance() with the same sample. Does nothing once the trial is finished.
 void observe(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial);
+
+// A press at one moment: its place on the tissue, depth and force; no force: none.
+struct PressMoment {
+    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
+    double depth_m = 0.0;
+    double force_N = 0.0;
+};
+// Takes the press of a device that leads, as an arm does, at a host time. Does nothing before the trial has begun and once it is finished.
+void observe_device(const scene::Plan& plan, const PressMoment& press, double t_host_s, Trial& trial);
 
 // Returns what the person's clock shows at a host time: the time since the first touch, without pauses. 0 before the
 // first touch.

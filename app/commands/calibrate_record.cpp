@@ -53,8 +53,7 @@ std::string level_options(const RecordArguments& arguments) {
 void print_recorded(const RecordArguments& arguments, const files::Json& result) {
     std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(),
                 result["points"].dump().c_str(), result["repeats"].dump().c_str(),
-                result["done"].get<bool>() ? "the curve is known everywhere"
-                                           : result["missing"].get_ref<const std::string&>().c_str());
+                known_words(result["done"].get<bool>(), result["missing"].get_ref<const std::string&>()).c_str());
     if (result.contains("sensor")) {
         std::string health;
         for (const auto& [what, count] : result["sensor"]["health"].items()) {

@@ -86,10 +86,15 @@ void tell_news(bool was_silent, bool was_invalid, bool was_outside, const calibr
     }
     if (!recording.judged) return;
     std::fprintf(stderr, "%spress %d: %s\n", ::isatty(2) != 0 ? "\r\033[K" : "", recording.session.repeat + 1,
-                 recording.knowledge.done ? "the curve is known everywhere" : recording.knowledge.missing.c_str());
+                 known_words(recording.knowledge.done, recording.knowledge.missing).c_str());
 }
 
 }  // namespace
+
+std::string known_words(bool done, const std::string& missing) {
+    if (!done) return missing;
+    return "the curve is known everywhere" + (missing.empty() ? "" : "; " + missing);
+}
 
 files::Json record_calibration(const calibration::RecordArguments& arguments) {
     if (arguments.sensor == "typed" && arguments.levels == "-") {

@@ -28,4 +28,7 @@ std::unique_ptr<LevelSource> open_level_window();
 // Runs the session and returns its result. Throws std::runtime_error if the sensor gives nothing.
 files::Json record_calibration(const calibration::RecordArguments& arguments);
 
+// What a session has shown, in words; `missing`: as in calibration::Knowledge.
+std::string known_words(bool done, const std::string& missing);
+
 }  // namespace palpa::app

@@ -8,7 +8,7 @@ namespace {
 // What the screens show of a scene before anything is driven.
 TactileShown shown_of(const scene::Scene& scene) {
     TactileShown shown;
-    shown.arm_leads = scene.tactile->arm && scene.tactile->leads == scene::Leads::arm;
+    shown.arm_leads = scene::arm_leads(scene);
     shown.force_limit_N = scene.tactile->force_limit_N;
     shown.moment.force_limit_N = shown.force_limit_N;
     return shown;
@@ -39,7 +39,10 @@ void follow_tactile(double now_s, App& app) {
     TactileControl& tactile = app.tactile;
     if (!tactile.shown) return;
     if (tactile.driver) {
-        follow(now_s, app.session.state, tactile);
+        const bool fresh = follow(now_s, app.session.state, tactile);
+        const session::TactileMoment& moment = tactile.shown->moment;
+        if (fresh && tactile.shown->arm_leads && palpates(app.doing))
+            session::take_device_press({{moment.x_m, moment.y_m}, moment.depth_m, moment.force_N}, now_s, app.session);
     } else if (tactile.preview && palpates(app.doing)) {
         preview_pins(app.session.state, *tactile.preview, tactile.shown->moment);
     }

@@ -288,6 +288,7 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
         if (recording.silent) warning_paragraph(words::kSensorStopped);
     }
     if (recording.knowledge.done) wrapped_text(words::kCurveKnown);
+    if (recording.knowledge.done && !recording.knowledge.missing.empty()) paragraph(recording.knowledge.missing + ".");
     // it is judged after each press, and not known in the middle of the first
     const bool judged = recording.known_repeats >= 0 || recording.resumed == session.points.size();
     if (judged && !recording.knowledge.done && !recording.knowledge.missing.empty()) {

@@ -144,7 +144,8 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
     ImGui::SetWindowFontScale(1.0f);
     if (result) {
         const bool menu = menu_of(shown.doing) != nullptr && *menu_of(shown.doing);
-        const bool by_key = gui.pressed(platform::key::enter) && !gui.shows_focus();
+        const bool by_key =
+            (gui.pressed(platform::key::enter) && !gui.shows_focus()) || gui.pressed(platform::key::escape);
         if (big_button(words::kStartPractice, words::kEnter, {60.0f * gui.mm(), kTarget_mm, true, true}, gui) ||
             (by_key && !menu))
             wishes.guided = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -85,6 +86,22 @@ ContactFit contact_fit(const ProbedPoint& p, const Touch& touch, double threshol
     return best;
 }
 
+// Returns the exponent from 1 to 2 of least cost, to 0.01.
+double best_exponent(const std::function<double(double)>& cost_N2) {
+    double best = 1.5, least_N2 = std::numeric_limits<double>::infinity();
+    const auto look = [&](double from, double to, double step) {
+        for (double exponent = std::max(1.0, from); exponent < std::min(2.0, to) + 0.5 * step; exponent += step) {
+            const double one_N2 = cost_N2(exponent);
+            if (!(one_N2 < least_N2)) continue;
+            least_N2 = one_N2;
+            best = exponent;
+        }
+    };
+    look(1.0, 2.0, 0.25);
+    for (const double step : {0.05, 0.01}) look(best - 5.0 * step, best + 5.0 * step, step);
+    return std::min(best, 2.0);
+}
+
 // Where the force crosses the threshold, for a place that tells no more.
 double crossing_m(const ProbedPoint& p, const Touch& touch, double threshold_N) {
     const std::size_t i = touch.first;
@@ -122,15 +139,14 @@ ContactHeights find_contacts(const std::vector<ProbedPoint>& points, double thre
     }
     constexpr double kFewestToTell = 4.0;
     const bool law = median(std::move(touching)) >= kFewestToTell;
-    double least_N2 = std::numeric_limits<double>::infinity();
-    for (const double exponent : law ? std::vector<double>{1.0, 1.25, 1.5, 1.75, 2.0} : std::vector<double>{1.5}) {
-        double cost_N2 = 0.0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (tells(i)) cost_N2 += contact_fit(points[i], touches[i], threshold_N, exponent).cost_N2;
-        }
-        if (!(cost_N2 < least_N2)) continue;
-        least_N2 = cost_N2;
-        out.exponent = exponent;
+    if (law) {
+        out.exponent = best_exponent([&](double exponent) {
+            double cost_N2 = 0.0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (tells(i)) cost_N2 += contact_fit(points[i], touches[i], threshold_N, exponent).cost_N2;
+            }
+            return cost_N2;
+        });
     }
     std::vector<double> in_air;
     for (const Touch& touch : touches) in_air.push_back(static_cast<double>(touch.first));

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <doctest/doctest.h>
 
+#include "calibration/calibrate.h"
 #include "calibration/points.h"
 #include "files/text.h"
 #include "tests/close_to.h"
@@ -39,6 +40,56 @@ TEST_CASE("points: columns by name, gram-force becomes newtons") {
     const CalibrationRows sessions = read("level,force_N,pen\n0,0.1,a\n0.5,1,a\n1,2,a\n0.5,2,b\n");
     CHECK(contains(sessions.notes.at(0), "2 sessions"));
     CHECK(sessions.repeat.back() == 1);
+}
+
+TEST_CASE("points: full level that begins between two points far apart is not fitted where its rows are, and said") {
+    CalibrationRows rows;
+    const auto level = [](double force_N) { return std::min(1.0, std::pow(force_N / 2.5, 0.6)); };
+    for (int k = 1; k <= 9; ++k) {
+        rows.force_N.push_back(0.27 * k);
+        rows.level.push_back(level(rows.force_N.back()));
+        rows.line.push_back(static_cast<std::size_t>(k + 1));
+    }
+    const auto with = [&](double full_N) {
+        CalibrationRows more = rows;
+        more.force_N.push_back(full_N);
+        more.level.push_back(1.0);
+        more.line.push_back(11);
+        return calibrate(more, {});
+    };
+    const Calibration open = with(2.98);
+    CHECK(open.ends.before_saturation_N == close_to(2.43));
+    CHECK(value_N(open.profile.curve, 1.0) == close_to(2.5).epsilon(0.01));  // 2.98 before
+    CHECK(contains(open.warnings.at(1), "begins somewhere between 2.43 and 2.98 N"));
+    const Calibration closed = with(2.51);
+    CHECK(std::isnan(closed.ends.before_saturation_N));
+    CHECK(value_N(closed.profile.curve, 1.0) == close_to(2.51).epsilon(0.005));
+    // a steep end, of which too little is known: the row at full level is all there is
+    CalibrationRows steep;
+    for (int k = 0; k <= 10; ++k) {
+        steep.level.push_back(k < 10 ? 0.08 * k + 0.08 : 1.0);
+        steep.force_N.push_back(0.1 * std::exp(4.0 * steep.level.back()));
+        steep.line.push_back(static_cast<std::size_t>(k + 2));
+    }
+    CHECK(std::isnan(ends_of(steep, {0.0, 1.0}).before_saturation_N));
+}
+
+TEST_CASE("points: presses that drift are no saturation; a level that stays in each press is") {
+    const auto drifting = [](double most_level) {
+        CalibrationRows rows;
+        for (int press = 0; press < 5; ++press) {
+            for (int k = 0; k <= 100; ++k) {
+                const double force_N = 0.022 * k;
+                rows.time_s.push_back(5.0 * press + 0.02 * k);
+                rows.level.push_back(std::min(most_level, std::pow(force_N / 2.4575, 0.4)));
+                rows.force_N.push_back(force_N * (1.0 + 0.05 * press));
+                rows.line.push_back(rows.line.size() + 2);
+            }
+        }
+        return rows;
+    };
+    CHECK(std::isnan(ends_of(drifting(1.0), {0.0, 1.0}).saturation_N));
+    CHECK(ends_of(drifting(0.8), {0.0, 1.0}).saturation_N > 1.0);
 }
 
 TEST_CASE("hard case 3: every kind of bad points has a message that names it") {

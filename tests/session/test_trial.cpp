@@ -9,6 +9,7 @@
 #include "session/trial.h"
 #include "study/read_logs.h"
 #include "tests/close_to.h"
+#include "tests/tactile/tactile_scene.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -410,4 +411,39 @@ TEST_CASE("trial: points of the path know when they were pressed") {
     REQUIRE(path.size() > 10);
     for (std::size_t i = 1; i < path.size(); ++i) CHECK(path[i].t_s >= path[i - 1].t_s);
     CHECK(path.back().t_s - path.front().t_s == close_to(3.3).epsilon(0.05));
+}
+
+TEST_CASE("trial: where the arm leads its presses count in the trial, and those of the pen on the screen do not") {
+    const TactileScene slab(R"({"arm": {"device": "arm.json"}, "leads": "arm"})");
+    Session session;
+    session.scene = slab.scene;
+    session.plan = slab.plan;
+    begin_trial({}, {1280, 800, kMissing, kMissing, "test"}, TrialMode::practice, session);
+    Sample pen;
+    pen.tool = Tool::pen;
+    const auto touch = [&](double t_s, Phase phase) {
+        const Eigen::Vector2d px = px_of_tissue(session.state.view, {0.02, 0.02});
+        pen.t_host_s = t_s;
+        pen.phase = phase;
+        pen.pressure = 0.5;
+        pen.x_px = px.x();
+        pen.y_px = px.y();
+        take_sample(pen, session);
+    };
+    touch(0.0, Phase::down);
+    touch(0.1, Phase::move);
+    CHECK(session.state.touch.down);
+    CHECK(session.state.touch.force_N == 0.0);
+    CHECK(session.trial.max_force_N == 0.0);
+    CHECK(session.trial.path.empty());
+    for (int k = 0; k <= 10; ++k) take_device_press({{0.02, 0.02}, 2e-3, 1.5}, 0.2 + 0.1 * k, session);
+    touch(1.25, Phase::up);  // does not end the arm's press
+    take_device_press({{0.025, 0.02}, 3e-3, 1.5}, 1.3, session);
+    take_device_press({}, 1.4, session);
+    CHECK(session.trial.max_force_N == 1.5);
+    CHECK(mean_force_N(session.trial) == close_to(1.5));
+    CHECK(session.trial.pressed_s == close_to(1.2).epsilon(1e-6));
+    CHECK(session.trial.pressed_m == close_to(5e-3));
+    CHECK(session.state.extremes.depth_m == 3e-3);
+    CHECK(study::deepest_near(session.trial.coverage, 0.025, 0.02, 1e-3) == close_to(3e-3));
 }

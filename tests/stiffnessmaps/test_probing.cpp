@@ -313,7 +313,7 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
 TEST_CASE("probing: the contact is where the force begins, not where it stands out from the noise") {
     constexpr unsigned kSeed = 11;
     CAPTURE(kSeed);
-    for (const double exponent : {1.0, 1.5, 2.0}) {
+    for (const double exponent : {1.0, 1.3, 1.5, 1.6, 1.9, 2.0}) {
         for (const double noise_N : {0.0, 0.01, 0.02}) {
             CAPTURE(exponent);
             CAPTURE(noise_N);
@@ -330,7 +330,7 @@ TEST_CASE("probing: the contact is where the force begins, not where it stands o
                 }
             }
             const Map map = imported(text);
-            CHECK(std::get<double>(choice_of(map, "contact_exponent")->value) == exponent);
+            CHECK(std::get<double>(choice_of(map, "contact_exponent")->value) == close_to(exponent).epsilon(0.05));
             const double threshold_N = std::get<double>(choice_of(map, "contact_force_N")->value);
             const double least_N = 0.01 * 0.5 * std::pow(3.93, exponent);
             CHECK(threshold_N == close_to(std::max(4.0 * noise_N, least_N)).epsilon(0.35));
@@ -343,7 +343,9 @@ TEST_CASE("probing: the contact is where the force begins, not where it stands o
                     const auto place = place_at(field, {3e-3 * (p % 8), 3e-3 * (p / 8)});
                     off_N.push_back(normal_force_N(field, place, 1e-3 * depth_mm) - right_N);
                 }
-                CHECK(std::abs(median(off_N)) < 2e-3 + 0.6 * noise_N + 0.01 * right_N);
+                // noise draws the exponent a little to one side
+                const double share = noise_N > 0.0 ? 0.02 : 0.01;
+                CHECK(std::abs(median(off_N)) < 2e-3 + 1.5 * noise_N + share * right_N);
             }
         }
     }

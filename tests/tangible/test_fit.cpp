@@ -75,7 +75,7 @@ TEST_CASE("fit: friction of cables that lag has the sense of what they do, not o
     PlantOptions plant = small_plant(0.9);
     plant.friction_share = 0.05;
     plant.lag_s = 0.03;
-    const FitResult result = fit_presses(small_strip()->device, recorded(plant, 2), {true, 24, {}});
+    const FitResult result = fit_presses(small_strip()->device, recorded(plant), {true, 24, {}});
     CHECK(result.settled);
     CHECK(result.fit.modulus_factor == close_to(0.9).epsilon(0.002));
     CHECK(result.fit.friction_share == close_to(0.05).epsilon(0.02));
