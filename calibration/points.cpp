@@ -116,27 +116,29 @@ void check_running(const CalibrationRows& rows) {
 }
 
 // Returns the greatest force that the rows below full level, given in order of level, can lead to at full level: by one and a
-// half times the slope of ln F over the last tenth of the range; noise, and 2 %. Infinite with too few rows.
+// half times the slope of ln F over the last tenth of the range; three times the scatter, and 2 %. Infinite with too few rows.
 double most_at_full_N(const CalibrationRows& rows, const std::vector<std::size_t>& below, LevelRange range) {
-    constexpr std::size_t kFewest = 5;
+    constexpr double kFewest = 5.0;
     const double from = range.highest - 0.1 * (range.highest - range.lowest);
-    std::vector<double> forces_N;
-    double sl = 0.0, sf = 0.0, sll = 0.0, slf = 0.0;
+    double n = 0.0, sl = 0.0, sf = 0.0, sll = 0.0, slf = 0.0, sff = 0.0;
     for (auto it = below.rbegin(); it != below.rend(); ++it) {
         const double level = rows.level[*it], force_N = rows.force_N[*it];
-        if (!(force_N > 0.0) || (level < from && forces_N.size() >= kFewest)) break;
-        forces_N.push_back(force_N);
+        if (!(force_N > 0.0) || (level < from && n >= kFewest)) break;
+        const double ln_F = std::log(force_N);
+        n += 1.0;
         sl += level;
-        sf += std::log(force_N);
+        sf += ln_F;
         sll += level * level;
-        slf += level * std::log(force_N);
+        slf += level * ln_F;
+        sff += ln_F * ln_F;
     }
-    const auto n = static_cast<double>(forces_N.size());
     const double spread = n * sll - sl * sl;
-    if (forces_N.size() < kFewest || !(spread > 1e-12 * n * sll)) return kInfinity;
+    if (n < kFewest || !(spread > 1e-12 * n * sll)) return kInfinity;
     const double slope = std::max(0.0, (n * slf - sl * sf) / spread), last = rows.level[below.back()];
     const double ln_F = sf / n + slope * (last - sl / n) + 1.5 * slope * (range.highest - last);
-    return 1.02 * std::exp(ln_F) + 3.0 * noise_N(forces_N);
+    const double scatter =
+        std::sqrt(std::max(0.0, sff - sf * sf / n - slope * slope * spread / n) / n);  // about that line
+    return (1.02 + 3.0 * scatter) * std::exp(ln_F);
 }
 
 // Returns whether the level stays while the force rises by a quarter, and by more than noise: in most presses, where presses

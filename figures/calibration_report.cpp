@@ -129,7 +129,10 @@ void print_calibration(const calibration::Calibration& calibration) {
                 calibration.by_repeats ? "repeats left out of the fit" : "points left out of the fit");
     std::printf("  first response at %s N, full scale at %s N", text(calibration.ends.activation_N).c_str(),
                 text(calibration.force_at_full_N).c_str());
-    if (!std::isnan(calibration.ends.saturation_N))
+    if (!std::isnan(calibration.ends.before_saturation_N))
+        std::printf(" (extrapolated), saturated from between %s and %s N on",
+                    text(calibration.ends.before_saturation_N).c_str(), text(calibration.ends.saturation_N).c_str());
+    else if (!std::isnan(calibration.ends.saturation_N))
         std::printf(", saturated from %s N", text(calibration.ends.saturation_N).c_str());
     std::printf("\n");
     constexpr double kShown_s = 1e-3;  // finer than a lag is found

@@ -45,8 +45,8 @@ TEST_CASE("points: columns by name, gram-force becomes newtons") {
 TEST_CASE("points: full level that begins between two points far apart is not fitted where its rows are, and said") {
     CalibrationRows rows;
     const auto level = [](double force_N) { return std::min(1.0, std::pow(force_N / 2.5, 0.6)); };
-    for (int k = 1; k <= 9; ++k) {
-        rows.force_N.push_back(0.27 * k);
+    for (int k = 3; k < 30; ++k) {  // three presses, each with the same steps
+        rows.force_N.push_back(0.27 * (k / 3));
         rows.level.push_back(level(rows.force_N.back()));
         rows.line.push_back(static_cast<std::size_t>(k + 1));
     }
@@ -54,7 +54,7 @@ TEST_CASE("points: full level that begins between two points far apart is not fi
         CalibrationRows more = rows;
         more.force_N.push_back(full_N);
         more.level.push_back(1.0);
-        more.line.push_back(11);
+        more.line.push_back(40);
         return calibrate(more, {});
     };
     const Calibration open = with(2.98);

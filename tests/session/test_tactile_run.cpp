@@ -390,5 +390,5 @@ TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes o
     CHECK(report["faults"][0]["fault"] == "stopped");
     CHECK(live.devices().empty());
     const auto rows = read_device_rows(folder / "t.tactile.tsv", field_names<tactile::LoopFeedback>());
-    CHECK(rows.size() > 20);
+    CHECK(rows.size() >= 4);  // one for each force, at least
 }
