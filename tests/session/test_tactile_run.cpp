@@ -326,7 +326,7 @@ TEST_CASE("tactile run: a table that becomes ready during a run is a row of the 
 }
 
 TEST_CASE("tactile live: the loop goes over to a table that a worker makes meanwhile") {
-    const TactileScene slab(R"({"display": {"device": "pins-6x6.json"}, "table": {"spacing_mm": 10, "error": 0.5}})");
+    const TactileScene slab(R"({"arm": {"device": "arm.json"}, "table": {"spacing_mm": 10, "error": 0.5}})");
     const auto plan = slab.tactile_plan();
     tactile::make_table_meanwhile({}, *plan);
     const auto loop = make_tactile_loop(plan);
