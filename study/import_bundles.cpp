@@ -51,9 +51,11 @@ bool begins_with(const std::string& text, const std::string& other) {
 
 bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") != std::string::npos; }
 
-// Returns the trial that a run of palpation finished; 0 if it was interrupted, or if its events cannot be read: the
-// analysis will say so, and the tablets' logs are kept all the same.
+// Returns the trial that a run of palpation finished; 0 if it was interrupted, if it is one of the two intervals of a forced
+// choice, which have the same trial, or if its events cannot be read: the analysis will say so, and the tablets' logs are kept
+// all the same.
 int finished_trial(const std::string& events_text, const std::string& name) {
+    if (name.find("_task-interval_") != std::string::npos) return 0;
     std::vector<std::string> notes;
     try {
         const RunLog run = run_in(events_text, name, notes);

@@ -17,7 +17,8 @@ struct BundleReport {
 
 // Everything is checked before the first byte is written. Throws InputError, and writes nothing, for a file that exists
 // with other content, a symbolic link at its place, two bundles that differ in one file, the study.json of another
-// study, a participant who is described differently, and a trial that a participant finished a second time. New files that a full disk interrupts are removed again. After
+// study, a participant who is described differently, and a trial that a participant finished a second time. New files that
+// a full disk interrupts are removed again. After
 // a kill each file is whole or absent, and the same call completes the import. When the function returns, the files are
 // on the disk; the events of a trial are written after its other files. Participants are added to those of the folder,
 // and answers (ratings, choices) to those of an earlier bundle. Of study.json only the keys that identify the study are

@@ -334,6 +334,12 @@ TEST_CASE("import bundles: two tablets on which one participant did a trial are 
         return write_bundle(folder / name, texts);
     };
     const auto one = bundle("one", {{run(1), events(1, 2.0, "finish")}, {run(2), events(2, 2.0, "interrupted")}});
+    const auto interval = [](int number) {  // both of a forced choice have its trial
+        return "sub-01/beh/sub-01_task-interval_run-0" + std::to_string(number) + "_events.tsv";
+    };
+    const auto pair =
+        bundle("pair", {{interval(1), events(9, 2.0, "finish")}, {interval(2), events(9, 3.0, "finish")}});
+    CHECK(import_bundles({pair}, folder / "pairs").written.size() == 3);
     const auto rest = bundle("rest", {{run(3), events(2, 3.0, "finish")}, {run(4), events(3, 3.0, "finish")}});
     const auto other = bundle("other", {{run(5), events(1, 4.0, "finish")}});
     const auto refused = [&](const std::vector<fs::path>& bundles, const fs::path& into) {
