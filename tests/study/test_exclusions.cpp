@@ -160,8 +160,10 @@ TEST_CASE("replacements: who was to take a place and never came is replaced by a
     take_part(log, protocol, "22", 2);
     const auto refused = [&](const Replacement& one) { return message_of([&] { add_replacement(log, one); }); };
     CHECK(contains(refused({"02", "23", "x"}), "22 has begun in it"));
-    append_synced(log / "replacements.tsv", "02\t23\tby hand\n");
-    CHECK(contains(message_of([&] { read_replacements(log); }),
-                   "line 4, participant: found '02', expected each participant "
-                   "once: 22 has this place already"));
+    take_part(log, protocol, "21", 2);  // comes late
+    CHECK(replaced_by(log, "02") == "22");
+    CHECK(progress_of(log, protocol, "21").plan.number == 3);
+    CHECK(progress_of(log, protocol, "22").plan.number == 2);
+    const std::string report = report_markdown(make_report(read_study(log), {}));
+    CHECK(contains(report, "Of 6 planned tests 6 are finished and 0 are missing"));
 }
