@@ -17,6 +17,7 @@ using devices::ArmFeedback;
 using devices::ArmMode;
 
 constexpr double kStrokeTick_s = 1e-3;
+constexpr double kSilent_s = 0.5;  // what is left of the strokes tells no stiffness
 
 class LinkRig : public ArmRig {
   public:
@@ -88,6 +89,7 @@ double await_sensor(const std::string& arm, ArmRig& rig, ArmFeedback& feedback) 
         rig.send(ArmCommand{});
     }
     if (!answers) throw std::runtime_error(arm + ": nothing answers within 2 s");
+    if (feedback.has_sensor != 1.0) throw std::runtime_error(arm + ": its force sensor says nothing within 2 s");
     return now_s;
 }
 
@@ -123,8 +125,8 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     out.rows.reserve(static_cast<std::size_t>(options.seconds / kStrokeTick_s) + 16);
     ArmFeedback feedback;
     const double began_s = await_sensor(options.arm, rig, feedback);
-    out.has_sensor = feedback.has_sensor == 1.0;
-    double last_s = began_s, told_s = began_s, heard_s = began_s, longest_silence_s = 0.0, sent_N = 0.0;
+    double last_s = began_s, told_s = began_s, heard_s = began_s, felt_s = began_s;
+    double longest_silence_s = 0.0, sent_N = 0.0;
     devices::TimeHistogram delays;
     FrictionDirection direction;
     while (last_s - began_s < options.seconds) {
@@ -135,14 +137,20 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
         const bool fresh = rig.read(feedback);
         if (fresh) delays.add(feedback.age_s + feedback.round_trip_s);
         if (fresh) heard_s = now_s;
+        const bool feels = feedback.has_sensor == 1.0;
+        if (feels) felt_s = now_s;
         longest_silence_s = std::max(longest_silence_s, now_s - heard_s);
         devices::begin_tick(options.limits, now_s, fresh, &feedback, out.guard);
         ArmCommand command = wanted(options, feedback, direction);
         devices::guard_arm(options.limits, command, out.guard);
         rig.send(command);
-        if (fresh && out.rows.size() < out.rows.capacity())
+        if (fresh && feels && out.rows.size() < out.rows.capacity())
             out.rows.push_back({now_s, feedback.depth_m, feedback.velocity_m_per_s, feedback.sensor_N, sent_N});
         sent_N = command.force_N + command.feedforward_N;
+        if (now_s - felt_s > kSilent_s) {
+            rig.send(ArmCommand{});
+            throw std::runtime_error(options.arm + ": its force sensor fell silent in the middle of the strokes");
+        }
         constexpr double kTell_s = 0.1;
         if (!options.progress || now_s - told_s < kTell_s) continue;
         options.progress(now_s - began_s);
@@ -152,7 +160,6 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     out.delay_s = delays.quantile_s(0.5);
     if (devices::latches(out.guard.fault))
         throw std::runtime_error("arm: stopped: " + std::string(devices::text(out.guard.fault)));
-    constexpr double kSilent_s = 0.5;  // what is left of the strokes tells no stiffness
     if (longest_silence_s > kSilent_s)
         throw std::runtime_error("arm: nothing came from it for " + files::short_number(longest_silence_s) +
                                  " s in the middle of the strokes");

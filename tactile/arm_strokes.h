@@ -46,13 +46,12 @@ struct StrokeOptions {
 struct Strokes {
     std::vector<StrokeRow> rows;
     devices::Guard guard;
-    bool has_sensor = false;
     std::int64_t late_ticks = 0;  // that began over 1 ms late
     double delay_s = 0.0;         // median, from what the arm says to the command that follows from it, there and back
 };
 
 // Waits up to 2 s for the sensor's zero, then strokes. Throws std::runtime_error if nothing answers, if a fault
-// stopped the arm for good, or if it was silent for half a second.
+// stopped the arm for good, or if arm or sensor was silent for half a second; the sensor's silence ends the strokes at once.
 Strokes run_strokes(const StrokeOptions& options, ArmRig& rig);
 
 // Paths for a hand, as rows of a PRESS. Slow strokes over the whole range for a fit: at five speeds, the slower ones over

@@ -152,6 +152,43 @@ TEST_CASE("strokes: the force limit holds, whatever the law asks for, and NaN of
     CHECK_THROWS_WITH_AS(run_strokes(options, *stops), doctest::Contains("not a number"), std::runtime_error);
 }
 
+TEST_CASE("strokes: a force sensor that falls silent ends them, and one that never speaks begins none") {
+    // A simulated arm whose sensor goes at a time.
+    class Rig : public ArmRig {
+      public:
+        Rig(std::unique_ptr<ArmRig> rig, double from_s, double to_s)
+            : rig_(std::move(rig)), from_s_(from_s), to_s_(to_s) {}
+        double next_tick() override { return now_s_ = rig_->next_tick(); }
+        bool read(devices::ArmFeedback& out) noexcept override {
+            const bool came = rig_->read(out);
+            if (now_s_ > from_s_ && now_s_ < to_s_) out.sensor_N = out.has_sensor = 0.0;
+            return came;
+        }
+        void send(const devices::ArmCommand& command) noexcept override { rig_->send(command); }
+
+      private:
+        std::unique_ptr<ArmRig> rig_;
+        double from_s_, to_s_, now_s_ = 0.0;
+    };
+    const ArmPlantParameters arm = arm_parameters(1);
+    const auto path = slow_strokes(-5e-3, 45e-3);
+    StrokeOptions options;
+    options.arm = "the arm";
+    options.seconds = path.back().t_s;
+    options.limits = wide_limits();
+    const auto strokes = [&](double from_s, double to_s) {
+        Rig rig(virtual_rig(make_arm_plant(arm, path, 1)), from_s, to_s);
+        return run_strokes(options, rig);
+    };
+    CHECK_THROWS_WITH_AS(strokes(12.0, 1e9), "the arm: its force sensor fell silent in the middle of the strokes",
+                         std::runtime_error);
+    CHECK_THROWS_WITH_AS(strokes(-1.0, 1e9), "the arm: its force sensor says nothing within 2 s", std::runtime_error);
+    // while it is silent for a moment nothing is taken for 0 N
+    const ArmCompensation found = fit_compensation(strokes(12.0, 12.3).rows).compensation;
+    CHECK(found.coulomb_N == close_to(arm.coulomb_N).epsilon(0.1));
+    CHECK(found.weight_N == close_to(9.80665 * arm.weight_kg).epsilon(0.05));
+}
+
 TEST_CASE("strokes: the same seed gives the same rows, to the last bit") {
     const ArmPlantParameters arm = arm_parameters(4);
     const Strokes a = cycles_at(500.0, arm, std::nullopt, 4), b = cycles_at(500.0, arm, std::nullopt, 4);
