@@ -123,6 +123,7 @@ std::string axial_doubt(const Part& part, const PartLoad& load) {
     if (!part.axis) return "";
     const auto axis = static_cast<std::size_t>(*part.axis);
     const double along = load.direction[axis];
+    if (along == 0.0) return "";
     const double across = std::sqrt(std::max(0.0, 1.0 - along * along));
     bool clamped_low = true;
     double buckling_N = std::numeric_limits<double>::infinity();

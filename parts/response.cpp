@@ -160,6 +160,7 @@ Response beam_response(const Part& part, const PartLoad& load, const ResponseReq
     const std::vector<Station> stations = stations_of(part, load, named, kBeamStations);
     Response out;
     start_response(part, stations, request, out);
+    out.validity = beam_validity(part, load, request.method);
     const double end_m = load_place_m(part, named.clamped_low ? stations.back().load : stations.front().load);
     const PartBeam beam = beam_of(part, load, end_m);
     if (!beam.why_not.empty()) throw files::bad_input(part.file, "axis", beam.why_not, "a beam to its free end");
@@ -258,14 +259,18 @@ bool CellResponse::advance() {
     const std::size_t station = out.compliance_m_per_N.size();
     if (station == work.loads.size()) return false;
     by_name(work.part, work.load, [&] {
+        const PartLoad& load = work.loads[station];
         if (!work.solve)
-            work.solve = begin_solve(*work.multigrid, unit_load_N(work.part, work.model, work.loads[station]),
+            work.solve = begin_solve(*work.multigrid, unit_load_N(work.part, work.model, load),
                                      {work.request.energy_error, 500}, work.u_m);
         if (mechanics::advance(*work.multigrid, *work.solve)) return;
         VoxelSolution solution = std::move(work.solve->solution);
         work.solve.reset();
         work.u_m = std::move(solution.u_m);
         out.compliance_m_per_N.push_back(solution.work_J);
+        if (station == out.named)
+            out.validity = cell_validity(work.part, load, work.model, unit_load_N(work.part, work.model, load),
+                                         work.u_m, solution.work_J);
         out.energy_error = std::max(out.energy_error, solution.energy_error);
         out.iterations += solution.iterations;
         out.converged = out.converged && solution.converged;
@@ -316,6 +321,12 @@ double compliance_at(const Response& response, const StationPlace& place) {
     if (place.share == 1.0) return c[place.low + 1];
     const double root = (1.0 - place.share) * std::cbrt(c[place.low]) + place.share * std::cbrt(c[place.low + 1]);
     return root * root * root;
+}
+
+double applies_to_m(const Response& response, const StationPlace& place) {
+    const double to_m = response.validity.to_m;
+    if (!(to_m > 0.0) || std::isinf(to_m)) return to_m;
+    return to_m * std::cbrt(compliance_at(response, place) / response.compliance_m_per_N[response.named]);
 }
 
 std::array<double, 2> field_at(const Response& response, const StationPlace& place, double u_m, double v_m) {

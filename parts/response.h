@@ -34,6 +34,7 @@ struct Response {
     int iterations = 0;         // of voxels: in all
     std::int64_t cells = 0;
     bool converged = true;
+    Validity validity;  // at the load's own place
     // Picture: for each station, displacements along the two axes of the view at the nodes of a grid, averaged over the
     // depth, m/N; x of the view fastest, 2 numbers a node.
     std::array<int, 2> nodes{0, 0};
@@ -75,6 +76,10 @@ StationPlace place_of(const Response& response, double station_m);
 
 // Returns the compliance there: the cube root is interpolated. Allocates nothing and does not throw, nor does the next.
 double compliance_at(const Response& response, const StationPlace& place);
+
+// Up to which displacement the answer applies there: a uniform beam bends as much where the cube root of its compliance says
+// how far the load is from the clamp.
+double applies_to_m(const Response& response, const StationPlace& place);
 
 // Returns the displacement (u, v) per newton of a node of the picture's grid; of places between nodes bilinear.
 std::array<double, 2> field_at(const Response& response, const StationPlace& place, double u_m, double v_m);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "files/cache.h"
 #include "parts/response.h"
@@ -9,7 +10,8 @@
 namespace palpa::parts {
 namespace {
 
-constexpr std::size_t kFigures = 9;
+constexpr std::size_t kFigures = 11;
+constexpr double kAnyDisplacement_m = 1e14;
 
 }  // namespace
 
@@ -34,6 +36,8 @@ std::optional<Response> read_response(const std::filesystem::path& cache, std::u
     out.cells = static_cast<std::int64_t>(figures[5]);
     out.nodes = {static_cast<int>(figures[6]), static_cast<int>(figures[7])};
     out.spacing_m = figures[8];
+    if (figures[9] < kAnyDisplacement_m) out.validity.to_m = figures[9];
+    out.validity.why_not = kCellLimits[std::min(static_cast<std::size_t>(figures[10]), std::size(kCellLimits) - 1)];
     for (std::size_t i = 0; i < n; ++i) {
         const std::vector<double>& field = (*arrays)[3 + i];
         if (out.nodes[0] < 2 || out.nodes[1] < 2 ||
@@ -46,10 +50,12 @@ std::optional<Response> read_response(const std::filesystem::path& cache, std::u
 
 std::string write_response(const std::filesystem::path& cache, std::uint64_t fingerprint, const Response& response) {
     if (cache.empty() || !response.converged) return "";
+    const auto* limit = std::find(std::begin(kCellLimits), std::end(kCellLimits), response.validity.why_not);
     files::CachedArrays arrays{
         {static_cast<double>(response.method), static_cast<double>(response.named), response.interpolation_error,
          response.energy_error, static_cast<double>(response.iterations), static_cast<double>(response.cells),
-         static_cast<double>(response.nodes[0]), static_cast<double>(response.nodes[1]), response.spacing_m},
+         static_cast<double>(response.nodes[0]), static_cast<double>(response.nodes[1]), response.spacing_m,
+         std::min(response.validity.to_m, kAnyDisplacement_m), static_cast<double>(limit - std::begin(kCellLimits))},
         response.station_m,
         response.compliance_m_per_N};
     for (const std::vector<float>& field : response.field) arrays.emplace_back(field.begin(), field.end());

@@ -53,13 +53,22 @@ bool held_on_both_sides(const GridLevel& level, const Eigen::Matrix3Xd& load_N, 
     return false;
 }
 
+// Along a load.
+double height_along_m(const Part& part, const PartLoad& load) {
+    const FilledBox box = filled_box(part.voxels);
+    const auto c = static_cast<std::size_t>(largest_axis(load.direction));
+    return part.voxels.frame.pitch_m * (box.high[c] - box.low[c]);
+}
+
+bool is_one_cell_thick(const CellModel& model) {
+    return *std::min_element(model.cells.n.begin(), model.cells.n.end()) < kFewestCells;
+}
+
 void judge_stretch(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
                    MethodResult& out) {
-    const int along = largest_axis(load.direction);
-    const FilledBox box = filled_box(part.voxels);
-    const auto c = static_cast<std::size_t>(along);
-    const double height_m = part.voxels.frame.pitch_m * (box.high[c] - box.low[c]);
-    if (out.displacement_m <= kMostHeldDepth * height_m || !held_on_both_sides(model.level, load_N, along)) return;
+    const double height_m = height_along_m(part, load);
+    if (out.displacement_m <= kMostHeldDepth * height_m) return;
+    if (!held_on_both_sides(model.level, load_N, largest_axis(load.direction))) return;
     out.why_not = "held on both sides of the load, the part goes " +
                   files::short_number(out.displacement_m / height_m) +
                   " times its height deep: it stretches, which small displacements leave out";
@@ -93,9 +102,7 @@ void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matr
     out.stiffness_N_per_m = 1.0 / compliance;
     out.cells = static_cast<std::int64_t>(model.cells.place.size());
     judge_strain(greatest_strain(model, u_m), load.force_N, out);
-    const int across = *std::min_element(model.cells.n.begin(), model.cells.n.end());
-    if (across < kFewestCells)
-        out.why_not = "one cell across the part does not bend as the part does; smaller cells are needed";
+    if (is_one_cell_thick(model)) out.why_not = kCellLimits[4];
 }
 
 // The displacement at the tip by the beam's method, m.
@@ -119,8 +126,7 @@ double greatest_bending_strain(const PartBeam& beam, double across_N) {
     return most;
 }
 
-void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
-    const PartBeam beam = beam_of(part, load);
+void bend_beam(const PartBeam& beam, const PartLoad& load, MethodResult& out) {
     out.why_not = beam.why_not;
     if (!out.why_not.empty()) return;
     out.answered = true;
@@ -189,6 +195,54 @@ const char* name_of(Method method) {
     return "";
 }
 
+Validity beam_validity(const Part& part, const PartLoad& load, Method method) {
+    const PartBeam beam = beam_of(part, load);
+    const auto judge = [&](double force_N) {
+        PartLoad there = load;
+        there.force_N = force_N;
+        MethodResult out;
+        out.method = method;
+        bend_beam(beam, there, out);
+        if (out.why_not.empty()) out.why_not = axial_doubt(part, there);
+        return out;
+    };
+    constexpr double kFirst = 1e-3, kMost = 1e6;  // of the load's force
+    MethodResult good = judge(kFirst * load.force_N);
+    if (!good.why_not.empty()) return {0.0, good.why_not};
+    double low_N = kFirst * load.force_N, high_N = 2.0 * low_N;
+    MethodResult bad = judge(high_N);
+    while (bad.why_not.empty() && high_N < kMost * load.force_N) {
+        good = bad;
+        low_N = high_N;
+        high_N *= 2.0;
+        bad = judge(high_N);
+    }
+    if (bad.why_not.empty()) return {};
+    while (high_N > 1.01 * low_N) {
+        const double middle_N = std::sqrt(low_N * high_N);
+        MethodResult result = judge(middle_N);
+        const bool applies = result.why_not.empty();
+        (applies ? low_N : high_N) = middle_N;
+        (applies ? good : bad) = std::move(result);
+    }
+    return {good.displacement_m, bad.why_not};
+}
+
+Validity cell_validity(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
+                       const Eigen::Matrix3Xd& u_m, double compliance_m_per_N) {
+    if (is_one_cell_thick(model)) return {0.0, kCellLimits[4]};
+    const CellStrain unit = greatest_strain(model, u_m);
+    Validity out;
+    const auto limit = [&](double to_m, const char* why_not) {
+        if (to_m < out.to_m) out = {to_m, why_not};
+    };
+    limit(compliance_m_per_N * kMostTurn_deg / (kDegrees * unit.rotation_rad), kCellLimits[1]);
+    limit(compliance_m_per_N * kRed / unit.strain, kCellLimits[2]);
+    if (held_on_both_sides(model.level, load_N, largest_axis(load.direction)))
+        limit(kMostHeldDepth * height_along_m(part, load), kCellLimits[3]);
+    return out;
+}
+
 std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, const StiffnessOptions& options) {
     std::vector<MethodResult> out;
     std::optional<CellModel> model;
@@ -200,7 +254,7 @@ std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, c
         const double began_s = files::steady_s();
         try {
             if (method < Method::voxels) {
-                bend_beam(part, load, result);
+                bend_beam(beam_of(part, load), load, result);
             } else {
                 if (!model) {
                     model = cell_model(part, voxels_per_cell(part, options.cell_m));

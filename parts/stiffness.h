@@ -1,7 +1,9 @@
 #pragma once
 // The stiffness of a part under one of its loads, by several methods.
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +11,8 @@
 #include "parts/part_file.h"
 
 namespace palpa::parts {
+
+struct CellModel;  // cell_model.h
 
 // paper                        the torsion spring by which the paper replaces a beam (parts/beam_model.h); never applies
 // euler_bernoulli, timoshenko  the part as a clamped beam along `axis` (mechanics/beam.h)
@@ -44,6 +48,24 @@ struct MethodResult {
 // Answers with every method in turn. Throws InputError if the load has no surface under it, if nothing is held, and for a
 // cell that is no whole number of voxels.
 std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, const StiffnessOptions& options);
+
+// How far an answer in proportion to the force can be followed.
+struct Validity {
+    double to_m =
+        std::numeric_limits<double>::infinity();  // along the load, at its own place; 0: the method never applies
+    std::string why_not;                          // why not beyond it
+};
+
+// Of paper, euler_bernoulli and timoshenko: up to where stiffness_of() says that the method applies, found by bisection to 1 %.
+Validity beam_validity(const Part& part, const PartLoad& load, Method method);
+
+// Of finite cells, by the solution u_m for 1 N; why_not is one of kCellLimits.
+inline constexpr const char* kCellLimits[] = {
+    "", "cells turn by more than 15 degrees", "strains are above 25 %, which is not small",
+    "held on both sides of the load, it stretches, which small displacements leave out",
+    "one cell across the part does not bend as the part does; smaller cells are needed"};
+Validity cell_validity(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
+                       const Eigen::Matrix3Xd& u_m, double compliance_m_per_N);
 
 // How much further than the elastica a linear beam may go, and how much of a beam's answer the shear may be that it leaves
 // out, before its answer is not taken to apply. A uniform beam is 3 % off where its chord turns by 10 degrees; one with a soft

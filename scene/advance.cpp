@@ -18,7 +18,7 @@ bool is_touching(platform::Phase phase) { return phase == platform::Phase::down 
 
 void calibrate(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     state.touch.force_N = 0.0;
-    if (!is_touching(sample.phase) || arm_leads(scene)) return;
+    if (!is_touching(sample.phase) || device_leads(scene)) return;
     double level = calibration::level_of(plan.profile, sample);
     if (std::isnan(level) && !has_sensor(sample.tool)) {
         // a mouse and keys have a simulated pressure, 0 ... 1, which stands for a share of the profile's range

@@ -24,7 +24,7 @@ using parts::Method;
 constexpr double kMargin_m = 8e-3;     // around and between the designs
 constexpr double kBarOfLoads = 2.5;    // full scale of the force bar, in forces of the load
 constexpr double kEnergyError = 1e-3;  // of voxels
-constexpr int kVersion = 3;            // of what the cache holds
+constexpr int kVersion = 4;            // of what the cache holds
 
 std::string percent_of(double share) { return files::short_number(100.0 * share) + " %"; }
 
@@ -88,6 +88,19 @@ void add_responses(const PartOptions& options, const mechanics::Progress& progre
         design.responses.push_back(
             parts::response_of(design.part, design.load, request, part_progress(progress, from, share)));
         tissue.cache_warning = parts::write_response(cache, key, design.responses.back());
+    }
+}
+
+// A beam that the finite cells contradict is none.
+void compare_with_cells(PartDesign& design) {
+    const parts::Response& cells = design.responses.back();
+    if (cells.method != Method::voxels || !(cells.validity.to_m > 0.0)) return;
+    const double cells_m_per_N = cells.compliance_m_per_N[cells.named];
+    for (parts::Response& beam : design.responses) {
+        const bool apart = std::abs(beam.compliance_m_per_N[beam.named] / cells_m_per_N - 1.0) > parts::kMostApart;
+        if (apart && beam.validity.to_m > 0.0)
+            beam.validity = {
+                0.0, "`voxels` says " + files::short_number(1e-3 / cells_m_per_N) + " N/mm: the part is no such beam"};
     }
 }
 
@@ -226,6 +239,7 @@ PartTissue prepare(const PartOptions& options, const Scene& scene, const mechani
             design.button = parts::button_curve(design.part, files::cache_folder(), tissue.cache_warning);
         } else {
             add_responses(options, progress, share * static_cast<double>(i), share, design, tissue);
+            compare_with_cells(design);
         }
     }
     if (buttons) tissue.methods.clear();  // a button's curve has no methods to choose from

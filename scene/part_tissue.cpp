@@ -218,6 +218,14 @@ void sample_surface(const PartTissue&, const SurfaceEffect&, const Contact& cont
     shape.n_x = shape.n_y = 0;
 }
 
+std::string_view doubt_of(const PartTissue& tissue, const PartWork& work, std::size_t design) {
+    const PartDesign& its = tissue.designs[design];
+    if (its.button) return {};
+    const Response& response = its.responses[work.method];
+    const double to_m = parts::applies_to_m(response, work.station[design]);
+    return to_m == 0.0 || work.depth_m[design] > to_m ? std::string_view(response.validity.why_not) : "";
+}
+
 const char* next_method(const PartTissue& tissue, PartWork& work) {
     if (work.down || tissue.methods.size() < 2) return nullptr;
     work.method = (work.method + 1) % tissue.methods.size();

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "files/json.h"
@@ -115,6 +116,10 @@ void sample_surface(const PartTissue& tissue, const SurfaceEffect& effect, const
 bool in_plane(const PartTissue& tissue);
 // Whether there is material of the design at p_m of the tissue's plane, at any depth.
 bool is_on_part(const PartDesign& design, const Eigen::Vector2d& p_m);
+
+// Why the present answer of a design is not to be trusted: the method never applies to it, or not as far as it is displaced
+// now (parts::Validity); "" if it applies.
+std::string_view doubt_of(const PartTissue& tissue, const PartWork& work, std::size_t design);
 
 // Takes the next method, unless something presses. Returns its name; nullptr if it stays.
 const char* next_method(const PartTissue& tissue, PartWork& work);

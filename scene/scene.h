@@ -102,6 +102,14 @@ inline bool arm_leads(const Scene& scene) noexcept {
     return scene.tactile && scene.tactile->arm && scene.tactile->leads == Leads::arm;
 }
 
+// Whether a finger on a real soft device is the input, at a place on the tissue that the scene names.
+inline bool soft_device_leads(const Scene& scene) noexcept {
+    return scene.tangible && scene.tangible->plant.empty() && scene.tangible->at_m;
+}
+
+// Whether a device's motion is the input, so that the screen takes no press.
+inline bool device_leads(const Scene& scene) noexcept { return arm_leads(scene) || soft_device_leads(scene); }
+
 // Returns the path parameters of the scene's law, or the defaults if it has none.
 avatar::PathParameters path_of(const Scene& scene);
 

@@ -105,8 +105,11 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
         if (design.button) paragraph(work.button[i].on ? words::kButtonOn : words::kButtonOff);
     }
     const bool air = shown.state.touch.down && !work.touching;
+    bool doubtful = false;
+    for (std::size_t i = 0; i < tissue.designs.size(); ++i)
+        doubtful = doubtful || !scene::doubt_of(tissue, work, i).empty();
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.84f, 0.35f, 1.0f));
-    wrapped_text(air ? words::kPressesAir : "");
+    wrapped_text(air ? words::kPressesAir : doubtful ? words::kNoMethodHere : "");
     ImGui::PopStyleColor();
 }
 
@@ -127,6 +130,17 @@ void draw_methods(const PartTissue& tissue, const PartWork& work) {
                         "\u00a0%)";
         }
         wrapped_text(line + "\u00a0N/mm");
+    }
+}
+
+// Why what the chosen method says of each design is not to be trusted.
+void draw_doubts(const PartTissue& tissue, const PartWork& work) {
+    for (std::size_t i = 0; i < tissue.designs.size(); ++i) {
+        const std::string_view why = scene::doubt_of(tissue, work, i);
+        if (!why.empty())
+            warning_paragraph(
+                words::filled(words::kMethodDoubted,
+                              {i == 0 ? "a" : "b", parts::name_of(tissue.methods[work.method]), std::string(why)}));
     }
 }
 
@@ -325,6 +339,7 @@ void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewSta
     ImGui::BeginChild("tools", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     draw_part_buttons(shown, tissue, gui, view.part, wishes);
     draw_methods(tissue, work);
+    draw_doubts(tissue, work);
     draw_part_notes(shown, gui, view.part, wishes);
     ImGui::EndChild();
     end_panel("parts", gui);

@@ -301,6 +301,8 @@ inline constexpr const char* kNewtons = "N";
 inline constexpr const char* kButtonOn = "on";
 inline constexpr const char* kButtonOff = "off";
 inline constexpr const char* kPressesAir = "The pen presses no part";
+inline constexpr const char* kNoMethodHere = "The method does not apply";
+inline constexpr const char* kMethodDoubted = "{}: {} does not apply here: {}.";
 inline constexpr const char* kCellsPending = "Finite cells: {} % computed; beams answer meanwhile.";
 inline constexpr const char* kSimulatedParts = "Simulated: linear elastic, small displacements.";
 inline constexpr const char* kSimulatedButtons =
@@ -536,6 +538,7 @@ inline constexpr const char* kReportsNone = "This {} does not report pressure.";
 inline constexpr const char* kReportsConstant = "This {} always reports the same pressure: it has no sensor.";
 inline constexpr const char* kReplayOf = "Replay of {}";
 inline constexpr const char* kNoSensorHere = "No pen or finger with a pressure sensor is connected.";
+inline constexpr const char* kNoSensorYet = "No pen or finger with a pressure sensor has touched the screen yet.";
 inline constexpr const char* kCannotBeWritten =
     "{}: cannot be written any more, so the trial ends here (is the disk full, or the folder gone?)";
 inline constexpr const char* kPreparing = "Preparing the tissue: {} %";

@@ -95,15 +95,47 @@ TEST_CASE("response: a part that is no beam answers at its own load only, and be
     CHECK(contains(refused(Method::elastica), "one of paper"));
 }
 
+TEST_CASE("response: up to where it says so its method applies, and not beyond") {
+    const Part part = parsed(slender());
+    for (const Method method : {Method::euler_bernoulli, Method::timoshenko, Method::voxels}) {
+        CAPTURE(name_of(method));
+        const PartLoad& tip = part.loads[0];
+        const Response response = response_of(part, tip, {method, {}, 1e-6, {0, 2}});
+        REQUIRE(response.validity.to_m > 0.0);
+        CHECK(applies_to_m(response, place_of(response, response.station_m[response.named])) ==
+              close_to(response.validity.to_m));
+        const auto why_not_at = [&](double share) {
+            PartLoad load = tip;
+            load.force_N = share * response.validity.to_m / named_compliance(response);
+            return stiffness_of(part, load, {{method}, {}, 1e-6}).front().why_not;
+        };
+        CHECK(why_not_at(0.99) == "");
+        CHECK(why_not_at(1.02) != "");
+    }
+    const Response paper = response_of(part, part.loads[0], {Method::paper, {}, 1e-6, {0, 2}});
+    CHECK(paper.validity.to_m == 0.0);
+    CHECK(contains(paper.validity.why_not, "2/3 of a beam's stiffness"));
+}
+
+TEST_CASE("response: half way to the clamp a beam applies about half as far") {
+    const Part part = parsed(slender());
+    const Response beam = response_of(part, part.loads[0], {Method::euler_bernoulli, {}, 1e-6, {0, 2}});
+    const double half_m = 0.5 * beam.station_m[beam.named];
+    CHECK(applies_to_m(beam, place_of(beam, half_m)) == close_to(0.5 * beam.validity.to_m).epsilon(0.15));
+}
+
 TEST_CASE("response: it comes back from the cache as it was, and not from a damaged one") {
     const TemporaryFolder folder;
     const Part part = parsed(slender());
-    const Response response = response_of(part, part.loads[0], {Method::timoshenko, {}, 1e-6, {0, 2}});
+    const Response response = response_of(part, part.loads[0], {Method::voxels, {}, 1e-6, {0, 2}});
     CHECK(write_response(folder / "c", 7, response).empty());
     const auto again = read_response(folder / "c", 7);
     REQUIRE(again);
     CHECK(again->compliance_m_per_N == response.compliance_m_per_N);
     CHECK(again->field == response.field);
     CHECK(again->named == response.named);
+    CHECK(again->validity.to_m == response.validity.to_m);
+    CHECK(again->validity.why_not == response.validity.why_not);
+    CHECK(response.validity.why_not != "");
     CHECK_FALSE(read_response(folder / "c", 8));
 }

@@ -101,6 +101,27 @@ TEST_CASE("part tissue: it is stiffer near the clamp, and a stiffer scene answer
     CHECK(pressed(tissue, stiff, work).depth_m == close_to(0.25 * far_m));
 }
 
+TEST_CASE("part tissue: a press beyond what its method applies to is doubted, and the paper's spring always") {
+    const Designs designs;
+    const PartTissue tissue = designs.made();
+    PartWork work = make_work(tissue);
+    const parts::Response& response = tissue.designs[0].responses[tissue.first_method];
+    const double u_m = 0.019;
+    const parts::StationPlace there = place_of(response, u_m);
+    const double most_N = applies_to_m(response, there) / compliance_at(response, there);
+    const auto doubt = [&](double force_N) {
+        pressed(tissue, press_on(tissue, 0, u_m, 1e-3, force_N), work);
+        return std::string(doubt_of(tissue, work, 0));
+    };
+    CHECK(doubt(0.9 * most_N) == "");
+    CHECK(doubt(1.1 * most_N) == response.validity.why_not);
+    CHECK(response.validity.why_not != "");
+    pressed(tissue, {}, work);
+    CHECK(doubt_of(tissue, work, 0) == "");
+    while (tissue.methods[work.method] != parts::Method::paper) REQUIRE(next_method(tissue, work) != nullptr);
+    CHECK(doubt_of(tissue, work, 0) != "");
+}
+
 TEST_CASE("part tissue: beside the part nothing is pressed; pens that are no numbers end the touch") {
     const Designs designs;
     const PartTissue tissue = designs.made();
