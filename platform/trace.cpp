@@ -149,10 +149,10 @@ files::Json info_json(const TraceInfo& info) {
 Trace read_trace(const std::filesystem::path& tsv) {
     Trace trace;
     files::Table table = files::read_tsv(tsv);
-    trace.info = read_info(sidecar_of(tsv));
     Sample order;
-    std::vector<std::size_t> columns;
+    std::vector<std::size_t> columns;  // before the sidecar, which a table of another kind does not have
     visit_fields(order, [&](std::string_view name, auto&) { columns.push_back(table.column(name)); });
+    trace.info = read_info(sidecar_of(tsv));
     while (table.next()) {
         // the first rows tell how many there will be; growing by doubling would take more memory
         constexpr std::size_t kFirst = 1000;

@@ -65,7 +65,7 @@ void add_notes(const LinearTissue& tissue, Plan& plan) {
             "here and a reference distance before");
     }
     plan.notes.push_back("the tissue is simulated: linear elastic, small displacements, moduli of " +
-                         tissue.phantom.name + "; the panel shows when a press leaves the linear range");
+                         tissue.phantom.name + "; the view Performance (C) shows when a press leaves the linear range");
 }
 
 // Returns the force (N) that reaches a depth: the median of five places, so that a few nodules do not matter. It is

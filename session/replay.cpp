@@ -102,6 +102,7 @@ files::Json run_json(const Session& session, std::int64_t frames, const scene::M
     const scene::Counters& counters = sum.counters;
     files::Json json;
     json["scene"] = scene.name;
+    if (!session.earlier_scenes.empty()) json["earlier_scenes"] = session.earlier_scenes;
     json["samples"] = counters.samples;
     json["frames"] = frames;
     json["steps"] = counters.steps;

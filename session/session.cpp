@@ -235,6 +235,10 @@ Totals operator+(const Totals& before, const scene::State& trial) {
 void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, const scene::ScreenArea& screen,
                    Session& session) {
     scene::State state = scene::start(scene, *plan, screen);
+    std::vector<std::string>& earlier = session.earlier_scenes;
+    const bool other = session.plan && scene.name != session.scene.name && session.state.extremes.force_N > 0.0;
+    if (other && std::find(earlier.begin(), earlier.end(), session.scene.name) == earlier.end())
+        earlier.push_back(session.scene.name);
     session.before = session.before + session.state;
     Trial trial = make_trial(*plan, session.trial.mode);
     session.scene = std::move(scene);

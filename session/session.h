@@ -42,7 +42,8 @@ struct Session {
     // Never null. Shared, so that trials do not copy it: the plan of a linear tissue can take hundreds of megabytes.
     std::shared_ptr<const scene::Plan> plan = std::make_shared<const scene::Plan>();
     scene::State state;
-    Totals before;  // of the trials that are over
+    Totals before;                            // of the trials that are over
+    std::vector<std::string> earlier_scenes;  // that were pressed, by name
     Trial trial;
     std::string device;  // for the log
     int trials = 0;      // that have begun
@@ -93,7 +94,7 @@ bool files_good(const Session& session);
 // Logs an event that no sample brings, such as the loss of a device. now_s: host time, as Sample::t_host_s.
 void note_event(std::string_view trial_type, double now_s, Session& session);
 
-// Takes the press of a device that leads (scene::arm_leads) at a host time: it counts in the trial's force, way and coverage.
+// Takes the press of a device that leads (scene::device_leads) at a host time: it counts in the trial's force, way and coverage.
 void take_device_press(const PressMoment& press, double now_s, Session& session);
 
 // Moves the trial's time on where no sample does; rows that follow are not before it.

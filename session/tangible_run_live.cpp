@@ -121,7 +121,7 @@ class TangibleThread {
         const double time_s = now_s - began_s_;
         PenContact contact;
         const bool touched = loop_->pen.take(contact);
-        if (touched && model_) model_->pen_N = contact.down > 0.5 ? contact.normal_N : 0.0;
+        if (touched && model_) model_->pen_N = contact.down > 0.5 ? plan_->world.finger_share * contact.normal_N : 0.0;
         TangibleFeedback feedback = model_ ? model_->read(time_s) : rig_->read(began_s_);
         if (stopped_) feedback.stopped = 1.0;
         const bool sends = tangible_step(time_s, touched ? &contact : nullptr, feedback, *loop_, record_.command);

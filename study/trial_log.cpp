@@ -18,7 +18,9 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("order_id", r.order_id, "", "row of the protocol's order");
     visit("condition", r.condition, "",
           "of the protocol; without one the law of the avatar: display_ratio, delay or none");
-    visit("device_id", r.device_id, "", "pen, touch screen or mouse");
+    visit("device_id", r.device_id, "",
+          "device of the study's condition; without a study the pens, touch screens or mouse at the trial's "
+          "beginning, n/a in a browser, which does not tell (tool in samples.tsv: what pressed)");
     visit("calibration_id", r.calibration_id, "", "profile of the pressure");
     visit("map_id", r.map_id, "", "tissue");
     visit("map_rotation_deg", r.map_rotation_deg, "deg", "how the tissue was turned, counter-clockwise");

@@ -9,7 +9,8 @@ World make_world(const scene::Scene& scene, const scene::Plan& plan) {
     world.tissue = &plan.tissue;
     world.force_N_per_N = scene.stiffness_scale;
     if (scene.tangible) {
-        world.force_N_per_N *= scene.tangible->force_scale;
+        world.finger_share = scene.tangible->force_scale;
+        world.force_N_per_N *= world.finger_share;
         world.depth_scale = scene.tangible->depth_scale;
     }
     return world;

@@ -9,6 +9,7 @@ namespace palpa::tangible {
 struct World {
     const scene::Tissue* tissue = nullptr;  // of the scene's plan, which must outlive this
     double force_N_per_N = 1.0;  // the device's force over that of the prepared tissue: both scales of the scene
+    double finger_share = 1.0;   // force_scale: what of a press on the tissue is one on the device
     double depth_scale = 1.0;    // depth in the tissue over that of the device
 };
 World make_world(const scene::Scene& scene, const scene::Plan& plan);

@@ -27,6 +27,9 @@ namespace palpa::app {
 namespace {
 
 void print_result(const files::Json& result) {
+    // the figures are those of all scenes of the run
+    for (const auto& earlier : result.value("earlier_scenes", files::Json::array()))
+        std::printf("%s, ", earlier.get<std::string>().c_str());
     std::printf("%s: %s samples, %s frames, %s steps, %s dropped\n", result["scene"].get<std::string>().c_str(),
                 result["samples"].dump().c_str(), result["frames"].dump().c_str(), result["steps"].dump().c_str(),
                 result["dropped_steps"].dump().c_str());

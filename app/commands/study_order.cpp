@@ -95,7 +95,7 @@ void print_imbalance(const study::Protocol& protocol, const std::vector<study::P
         std::printf("group %s, %d people: positions differ by %d, carry-over by %d, views by %d", one.group.c_str(),
                     one.participants, one.position, one.carry_over, one.turns);
         if (one.participants % one.full_rounds_of != 0) {
-            std::printf("; a multiple of %d people would balance the order", one.full_rounds_of);
+            std::printf("; a multiple of %d people would balance the positions", one.full_rounds_of);
         }
         std::printf("\n");
     }

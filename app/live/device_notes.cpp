@@ -60,7 +60,7 @@ void note_devices(const platform::Window& window, App& app) {
     const auto& devices = app.notices.devices;
     const bool pressure =
         std::any_of(devices.begin(), devices.end(), [](const platform::PointerDevice& d) { return d.has_pressure; });
-    if (!pressure) notes.push_back(words::kNoSensorHere);
+    if (!pressure) notes.push_back(app.notices.devices_listed ? words::kNoSensorHere : words::kNoSensorYet);
     if (!pressure || app.notices.offer_hold) notes.push_back(words::kOtherWays);
 }
 

@@ -27,7 +27,7 @@ void know_tangible(App& app) {
     const scene::Scene& scene = app.session.scene;
     if (!scene.tangible) return tangible.shown.reset();
     TangibleShown shown;
-    shown.device_leads = scene.tangible->plant.empty() && scene.tangible->at_m;
+    shown.device_leads = scene::soft_device_leads(scene);
     show_instead(std::move(shown), tangible);
 }
 
@@ -50,7 +50,13 @@ void follow_tangible(double now_s, App& app) {
     if (!tangible.shown || !tangible.driver) return;
     if (follow(now_s, app.session.state, tangible)) {
         add_to_press(tangible.shown->moment, *tangible.shown);
-        tangible.shown->was_pressed = tangible.shown->moment.pressed;
+        const session::TangibleMoment& moment = tangible.shown->moment;
+        tangible.shown->was_pressed = moment.pressed;
+        if (tangible.shown->device_leads && palpates(app.doing)) {
+            const double force_N = moment.pressed ? moment.wanted_N : 0.0;
+            const Eigen::Vector2d& at_m = *app.session.scene.tangible->at_m;
+            session::take_device_press({at_m, moment.world_depth_m, force_N}, now_s, app.session);
+        }
     }
     if (tangible.driver->latest(*tangible.shown->shape)) tangible.shown->has_shape = true;
 }

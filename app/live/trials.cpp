@@ -21,7 +21,9 @@
 namespace palpa::app {
 namespace {
 
+// Names the devices that are connected; a browser does not tell them.
 std::string device_names(const platform::Window& window) {
+    if (!window.lists_devices()) return "n/a";
     std::string names;
     for (const platform::PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
     return names.empty() ? "mouse" : names;

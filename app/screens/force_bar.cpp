@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/screens/tactile_screen.h"
+#include "app/screens/tangible_screen.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
@@ -14,6 +15,9 @@ namespace {
 
 // How far the force bar reaches beyond the greatest force at the known depth.
 constexpr double kBarOver = 1.25;
+
+bool arm_leads(const Shown& shown) { return shown.tactile != nullptr && shown.tactile->arm_leads; }
+bool soft_device_leads(const Shown& shown) { return shown.tangible != nullptr && shown.tangible->device_leads; }
 
 double force_limit_N(const Shown& shown) {
     return shown.tactile != nullptr ? shown.tactile->force_limit_N : session::TactileMoment::kNone;
@@ -44,10 +48,18 @@ void draw_limit(ImVec2 at, float width_px, double limit_N, float mm, ImDrawList&
 
 }  // namespace
 
-bool arm_leads(const Shown& shown) { return shown.tactile != nullptr && shown.tactile->arm_leads; }
+bool device_leads(const Shown& shown) { return arm_leads(shown) || soft_device_leads(shown); }
 
 double felt_force_N(const Shown& shown) {
-    return arm_leads(shown) ? shown.tactile->moment.force_N : shown.state.contact.normal_N;
+    if (arm_leads(shown)) return shown.tactile->moment.force_N;
+    if (soft_device_leads(shown)) return shown.tangible->moment.wanted_N;
+    return shown.state.contact.normal_N;
+}
+
+double felt_depth_m(const Shown& shown) {
+    if (arm_leads(shown)) return shown.tactile->moment.depth_m;
+    if (soft_device_leads(shown)) return shown.tangible->moment.world_depth_m;
+    return shown.state.contact.depth_m;
 }
 
 void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {

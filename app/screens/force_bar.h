@@ -1,16 +1,17 @@
 #pragma once
-// The force that a person presses with, on the screen or on an arm.
+// The force that a person presses with, on the screen or on a device.
 
 #include "app/screens/gui.h"
 #include "app/screens/screens.h"
 
 namespace palpa::app {
 
-// True if the motion of a force arm is the input, and not that on the screen.
-bool arm_leads(const Shown& shown);
+// True if the motion of a force arm or of a soft device is the input, and not that on the screen.
+bool device_leads(const Shown& shown);
 
-// What the person presses with: on the screen, or on the arm where that leads.
+// What the person presses with, and how deep into the tissue: on the screen, or on the device that leads.
 double felt_force_N(const Shown& shown);
+double felt_depth_m(const Shown& shown);
 
 // What the line below the bar says of a contact: what the person does wrong, if anything. The limits of the tissue model
 // concern the experimenter alone.

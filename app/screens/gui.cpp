@@ -176,6 +176,8 @@ bool Gui::receive_button(const platform::WindowEvent& event) {
     const auto y = static_cast<float>(event.y_px);
     const bool owned = owns(x, y);
     if (event.made_from_touch) return owned;
+    pointer_x_px_ = x;
+    pointer_y_px_ = y;
     const bool down = event.kind == platform::WindowEvent::Kind::button_down;
     if (down ? owned : mouse_on_panel_) wait_for_frame({PanelInput::Kind::button, down, x, y}, waiting_);
     mouse_on_panel_ = down && owned;

@@ -66,19 +66,22 @@ void draw_card(const PanelArea& area, float px_per_mm) {
 }
 
 // Lets the person drag the frame's left or right edge, or anything between, to the size of the card.
-void drag_card(const PanelArea& area, double& px_per_mm) {
+void drag_card(const PanelArea& area, ScaleForm& form) {
     constexpr float kGrip = 1.4f;  // the edges can be gripped from outside
     const float width_mm = card_size(area).width_mm;
+    double& px_per_mm = form.card_px_per_mm;
     const auto half_px = static_cast<float>(0.5 * px_per_mm) * width_mm;
     const float middle_x = 0.5f * (area.x0 + area.x1);
     ImGui::SetCursorScreenPos(ImVec2(std::max(area.x0, middle_x - kGrip * half_px), area.y0));
     const float width_px = std::min(area.width(), 2.0f * kGrip * half_px);
     ImGui::InvisibleButton("card", ImVec2(std::max(1.0f, width_px), std::max(1.0f, area.height())));
+    if (ImGui::IsItemActivated()) form.held_px_per_mm = px_per_mm;
     if (!ImGui::IsItemActive()) return;
+    // from where it was taken hold of: a finger or a pen comes down far from where the pointer was
     const float now_px = std::abs(ImGui::GetMousePos().x - middle_x);
-    const float before_px = std::abs(ImGui::GetMousePos().x - ImGui::GetIO().MouseDelta.x - middle_x);
-    if (ImGui::IsMouseDragging(0, 0.0f)) px_per_mm += static_cast<double>(2.0f * (now_px - before_px) / width_mm);
-    px_per_mm = std::clamp(px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
+    const float held_px = std::abs(ImGui::GetIO().MouseClickedPos[0].x - middle_x);
+    px_per_mm = std::clamp(form.held_px_per_mm + static_cast<double>(2.0f * (now_px - held_px) / width_mm),
+                           kLeast_px_per_mm, kMost_px_per_mm);
 }
 
 void step_buttons(const Gui& gui, double& px_per_mm) {
@@ -146,7 +149,7 @@ void draw_scale_screen(const Shown& shown, Gui& gui, ScaleForm& form, Wishes& wi
     paragraph(words::filled(words::kThisScreen, {shown.notices.screen_name, kept}));
     const float top_px = ImGui::GetCursorScreenPos().y;
     const PanelArea card{0.0f, top_px, screen.x, std::max(top_px + 1.0f, screen.y - 3.0f * gui.mm())};
-    drag_card(card, form.card_px_per_mm);
+    drag_card(card, form);
     draw_card(card, static_cast<float>(form.card_px_per_mm));
     end_panel("scale", gui);
 }

@@ -121,6 +121,7 @@ struct ScaleForm {
     double card_px_per_mm = 3.78;
     double taken_px_per_mm = 0.0;  // of the card when the field was last drawn
     double typed_px_per_mm = 0.0;  // in the field, NaN: nothing
+    double held_px_per_mm = 0.0;   // of the card when it was taken hold of
 };
 
 struct MapBrowser;     // map_screen.h

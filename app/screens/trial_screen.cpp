@@ -15,7 +15,7 @@ namespace palpa::app {
 namespace {
 
 // A surface that a study gives to the finger alone: the screen shows nothing of it, and its force only in practice.
-bool hides_tissue(const Shown& shown) { return study_of(shown.doing) != nullptr && arm_leads(shown); }
+bool hides_tissue(const Shown& shown) { return study_of(shown.doing) != nullptr && device_leads(shown); }
 bool hides_force(const Shown& shown) { return hides_tissue(shown) && !due_trial(*study_of(shown.doing)).practice; }
 
 // True for an interval of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
@@ -29,7 +29,7 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     const scene::Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
     value_line(words::kForce, fixed(felt_force_N(shown), 2) + " N", column_px);
-    const std::string depth_mm = fixed(1e3 * (arm_leads(shown) ? shown.tactile->moment.depth_m : contact.depth_m), 2);
+    const std::string depth_mm = fixed(1e3 * felt_depth_m(shown), 2);
     const std::string depth = contact.saturated ? words::filled(words::kMoreThan, {depth_mm}) : depth_mm + " mm";
     if (!is_interval(shown.doing)) value_line(words::kDepth, depth, column_px);
     // in a test the eye has to judge the lag, so no number shows it
@@ -180,7 +180,7 @@ void column_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes)
         ImGui::SetCursorPosX(left_px + 26.0f * gui.mm());
         draw_numbers(shown, gui);
     }
-    if (!is_interval(shown.doing) || arm_leads(shown)) draw_contact_note(shown);
+    if (!is_interval(shown.doing) || device_leads(shown)) draw_contact_note(shown);
     draw_actions(shown, gui, wishes);
     ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false,
                       ImGuiWindowFlags_NavFlattened);  // long messages scroll in the rest of the panel
@@ -206,7 +206,7 @@ void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) 
     ImGui::BeginChild("beside", ImVec2(0.0f, height_px - 2.0f * mm), false,
                       ImGuiWindowFlags_NavFlattened);  // long messages scroll
     if (!hides_force(shown)) draw_numbers(shown, gui);
-    if (!is_interval(shown.doing) || arm_leads(shown)) draw_contact_note(shown);
+    if (!is_interval(shown.doing) || device_leads(shown)) draw_contact_note(shown);
     draw_messages(shown, gui, wishes);
     ImGui::EndChild();
     ImGui::EndChild();

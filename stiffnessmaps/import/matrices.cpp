@@ -264,10 +264,12 @@ void refuse_units(const ImportOptions& options) {
 }
 
 void note_choices(const ImportOptions& options, bool from_names, const Stack& stack, MapSource& source) {
+    const ImportOptions untold;
     add_choice(source, "form", "matrices", "arrays, by their first bytes", "--form", options.form.has_value());
     add_choice(source, "spacing_mm", choice_mm({options.spacing_m[0], options.spacing_m[1]}), "", "--spacing-mm", true);
     add_choice(source, "origin_mm", choice_mm({options.origin_m[0], options.origin_m[1]}),
-               "the first number lies at 0, 0 unless told otherwise", "--origin-mm");
+               "the first number lies at 0, 0 unless told otherwise", "--origin-mm",
+               options.origin_m != untold.origin_m);
     add_choice(source, "depths_mm", choice_mm(stack.depths_m), "numbers before mm in the files' names", "--depths-mm",
                !from_names);
     const char* quantity = options.quantity == Quantity::force       ? "force"
@@ -285,7 +287,8 @@ void note_choices(const ImportOptions& options, bool from_names, const Stack& st
         add_choice(source, "contact_formula",
                    sphere ? "Hertz, sphere on a half space" : "line contact, cylinder on a half space",
                    "the indenter's shape", "--indenter, --indenter-radius-mm, --cylinder-length-mm, --poisson");
-        add_choice(source, "poisson", options.poisson, "soft tissue hardly changes its volume", "--poisson");
+        add_choice(source, "poisson", options.poisson, "soft tissue hardly changes its volume", "--poisson",
+                   options.poisson != untold.poisson);
     }
 }
 

@@ -413,11 +413,17 @@ TEST_CASE("trial: points of the path know when they were pressed") {
     CHECK(path.back().t_s - path.front().t_s == close_to(3.3).epsilon(0.05));
 }
 
-TEST_CASE("trial: where the arm leads its presses count in the trial, and those of the pen on the screen do not") {
+TEST_CASE("trial: where a device leads its presses count in the trial, and those of the pen on the screen do not") {
     const TactileScene slab(R"({"arm": {"device": "arm.json"}, "leads": "arm"})");
     Session session;
     session.scene = slab.scene;
     session.plan = slab.plan;
+    SUBCASE("an arm") {}
+    SUBCASE("a soft device, where the place is given") {
+        session.scene.tactile.reset();
+        session.scene.tangible.emplace();
+        session.scene.tangible->at_m = Eigen::Vector2d(0.02, 0.02);
+    }
     begin_trial({}, {1280, 800, kMissing, kMissing, "test"}, TrialMode::practice, session);
     Sample pen;
     pen.tool = Tool::pen;
@@ -437,7 +443,7 @@ TEST_CASE("trial: where the arm leads its presses count in the trial, and those 
     CHECK(session.trial.max_force_N == 0.0);
     CHECK(session.trial.path.empty());
     for (int k = 0; k <= 10; ++k) take_device_press({{0.02, 0.02}, 2e-3, 1.5}, 0.2 + 0.1 * k, session);
-    touch(1.25, Phase::up);  // does not end the arm's press
+    touch(1.25, Phase::up);  // does not end the device's press
     take_device_press({{0.025, 0.02}, 3e-3, 1.5}, 1.3, session);
     take_device_press({}, 1.4, session);
     CHECK(session.trial.max_force_N == 1.5);

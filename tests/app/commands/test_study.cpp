@@ -161,7 +161,7 @@ TEST_CASE("command study order: who gets what, with seeds and balance") {
     CHECK(json["imbalance"].size() == 2);
     CHECK(study("order " + protocol + "paper.json --participants 40 --json").out == called.out);
     const Called people = study("order " + protocol + "effects.json --participants 7");
-    CHECK(contains(people.out, "a multiple of 6 people would balance the order"));
+    CHECK(contains(people.out, "a multiple of 6 people would balance the positions"));
     CHECK(contains(people.out, "-- break --"));
     CHECK(contains(study("order " + protocol + "softer.json --participants 1").out, "kPa, reference first"));
 }

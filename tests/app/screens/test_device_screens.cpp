@@ -221,6 +221,8 @@ TEST_CASE("screens: a soft device fits at the sizes of desks and tablets: runnin
     many.moment.compliance.fill(kMissing);
     many.shape = std::make_shared<TangibleShape>(*running.shape);
     many.shape->node_m[10] = {NAN, NAN, NAN};
+    TangibleShown led = running;
+    led.device_leads = true;
     Screens screen{{}, WatchingTangible{}};
     Screens trial;
     constexpr double kTablet_px_per_mm = 11.8;
@@ -238,6 +240,7 @@ TEST_CASE("screens: a soft device fits at the sizes of desks and tablets: runnin
         draw_it(screen, failed, "tangible-failed");
         draw_it(screen, many, "tangible-many");
         draw_it(trial, stopped, "trial-tangible-stopped");
+        draw_it(trial, led, "trial-tangible-leads");
     }
 }
 

@@ -108,6 +108,12 @@ TEST_CASE("scale screen: the frame is as large as it is dragged") {
     CHECK(wider == close_to(before + 2.0 * 40.0 / 85.6).epsilon(1e-3));
     drag(160, 180);  // the left one
     CHECK(desk.app.view.scale.card_px_per_mm == close_to(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
+    // a finger comes down far from where the pointer was, in one frame: that is no drag
+    button(desk.window, true, 500, 300);
+    frames(desk, 3);
+    CHECK(desk.app.view.scale.card_px_per_mm == close_to(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
+    button(desk.window, false, 500, 300);
+    frames(desk, 3);
     move_mouse(desk.window, 600, 300);  // nothing is held
     frames(desk, 3);
     CHECK(desk.app.view.scale.card_px_per_mm == close_to(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
