@@ -78,7 +78,7 @@ std::string_view text(Fault fault) {
         case Fault::parent_gone:
             return "the program has ended";
         case Fault::guard_gone:
-            return "the guard has ended";
+            return "the guard has ended (start Palpa again)";
         case Fault::arm_error:
             return "the arm reports a fault of its own";
     }

@@ -47,6 +47,7 @@ bool ShapeGuard::poll() noexcept {
         fresh = true;
     }
     if (n < 0) {
+        if (newest_.fault != Fault::guard_gone) ++newest_.count[static_cast<std::size_t>(Fault::guard_gone)];
         newest_.fault = Fault::guard_gone;
         newest_.ready = false;
     }

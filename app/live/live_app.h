@@ -58,6 +58,7 @@ struct PartControl {
         files::Json operation;
     };
     std::vector<Undone> undone;                                     // the last one is done again first
+    std::optional<parts::Method> method;                            // that the person has chosen
     std::map<std::filesystem::path, std::filesystem::path> copies;  // of designs, by what they were made of
 };
 
@@ -176,7 +177,8 @@ void act(platform::Action action, platform::Window& window, App& app);
 // part_live.cpp
 // Carries out an edit of a part, or takes the last one back. What cannot be done becomes a problem on the screen.
 void change_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app);
-void forget_parts(App& app);                                            // before another scene
+void forget_parts(App& app);  // before another scene
+void note_method(App& app);   // which the person has just chosen: it stays when the parts are changed
 void follow_parts(platform::Window& window, const Gui& gui, App& app);  // once per turn of the loop
 
 // driven_devices.cpp: the devices of the scene, arm and pins or a soft device.

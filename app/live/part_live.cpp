@@ -122,6 +122,23 @@ bool buttons_only(const scene::Plan& plan) {
     return std::all_of(designs.begin(), designs.end(), [](const auto& design) { return design.button.has_value(); });
 }
 
+parts::Method method_now(const App& app) {
+    const scene::PartTissue& tissue = *scene::parts_of(app.session.plan->tissue);
+    return tissue.methods.at(scene::part_work_of(app.session.state.tissue)->method);
+}
+
+// Goes to the method that the person has chosen, by events of the log, once a trial of changed parts has begun.
+void take_chosen_method(platform::Window& window, App& app) {
+    const scene::PartTissue* tissue = scene::parts_of(app.session.plan->tissue);
+    const std::optional<parts::Method> chosen = app.parts.method;
+    if (tissue == nullptr || !chosen || study_of(app.doing) != nullptr) return;
+    if (app.session.state.touch.down || waits_for_keeper(app)) return;
+    const std::size_t methods = tissue->methods.size();
+    if (std::find(tissue->methods.begin(), tissue->methods.end(), *chosen) == tissue->methods.end()) return;
+    for (std::size_t i = 0; i < methods && method_now(app) != *chosen; ++i) act(platform::Action::method, window, app);
+    app.parts.method = chosen;
+}
+
 // Prepares the scene with its designs as they are now: by beams at once where it asks for cells, which follow.
 void show_designs(const scene::Scene& wanted, platform::Window& window, const Gui& gui, App& app) {
     scene::Scene now = wanted;
@@ -246,6 +263,11 @@ void change_part(const PartWish& wish, platform::Window& window, const Gui& gui,
     });
 }
 
+void note_method(App& app) {
+    const scene::PartTissue* tissue = scene::parts_of(app.session.plan->tissue);
+    if (tissue != nullptr && !tissue->methods.empty()) app.parts.method = method_now(app);
+}
+
 void forget_parts(App& app) {
     app.parts = {};
     app.view.part = {};
@@ -254,6 +276,7 @@ void forget_parts(App& app) {
 void follow_parts(platform::Window& window, const Gui& gui, App& app) {
     if (!std::exchange(app.parts.looked, true) && scene::part_options(app.session.scene.tissue) != nullptr)
         show_files(app);
+    take_chosen_method(window, app);
     if (!app.parts.cells) return;
     app.view.part.pending = app.parts.cells->share();
     if (!app.parts.cells->wait(0.0) || app.session.state.touch.down) return;  // the method changes between presses only

@@ -238,7 +238,8 @@ void turn_tissue(platform::Window& window, App& app) {
     scene::Mapping& mapping = turned.mapping;
     const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
     constexpr int kSteps[] = {3, 5};  // both reach all eight orientations before one is repeated
-    const int next = (now + kSteps[turned.seed % 2]) % 8;
+    const int step = mapping.random_turn ? 1 + static_cast<int>(std::random_device{}() % 7) : kSteps[turned.seed % 2];
+    const int next = (now + step) % 8;
     mapping.rotate_deg = 90 * (next % 4);
     mapping.flip = next >= 4;
     put_scene(std::move(turned), app.session.plan, window, app);
@@ -291,6 +292,7 @@ void act(platform::Action action, platform::Window& window, App& app) {
         sample.y_px = app.session.trial.last_px->y();
     }
     session::take_sample(sample, app.session);
+    if (action == platform::Action::method) note_method(app);
     if (!app.session.trial.finished) return;
     if (study != nullptr) return finish_study_trial(window, app);
     close_or_tell(app);  // before the presses end: the log of a finished trial ends with its last action

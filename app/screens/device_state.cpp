@@ -12,7 +12,7 @@
 namespace palpa::app {
 namespace {
 
-// What a stop means for the devices of this scene; empty if nothing is stopped.
+// What a stop or a fault means for the devices of this scene; empty if there is none.
 std::string stopped_words(const Shown& shown) {
     const bool study = study_of(shown.doing) != nullptr;
     // the screens of the devices say it themselves
@@ -20,9 +20,16 @@ std::string stopped_words(const Shown& shown) {
         return {};
     if (shown.tactile != nullptr && shown.tactile->moment.stopped)
         return words::filled(study ? words::kStoppedInStudy : words::kStoppedBanner, {shown.tactile->moment.fault});
-    if (shown.tangible == nullptr || !shown.tangible->moment.stopped) return {};
-    return words::filled(study ? words::kSoftStoppedInStudy : words::kSoftStoppedBanner,
-                         {shown.tangible->moment.fault});
+    if (shown.tangible != nullptr && shown.tangible->moment.stopped)
+        return words::filled(study ? words::kSoftStoppedInStudy : words::kSoftStoppedBanner,
+                             {shown.tangible->moment.fault});
+    if (study) return {};  // the trial is interrupted, which the study says
+    // a fault that goes by itself
+    if (shown.tactile != nullptr && shown.tactile->runs && *shown.tactile->moment.fault != '\0')
+        return words::filled(words::kRestsSince, {shown.tactile->moment.fault});
+    if (shown.tangible == nullptr || !shown.tangible->runs || shown.tangible->moment.held) return {};
+    const char* fault = shown.tangible->moment.fault;
+    return *fault == '\0' ? std::string() : words::filled(words::kSoftRestsSince, {fault});
 }
 
 }  // namespace

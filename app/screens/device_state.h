@@ -37,7 +37,7 @@ void draw_devices(const std::vector<session::TactileDevice>& devices);
 void draw_stop_or_release(const DriveState& drive, bool stopped, float width_px, float height_mm, const Gui& gui,
                           Wishes& wishes);
 
-// Says over every screen that everything has been stopped, for as long as it is.
+// Says over every screen that everything has been stopped or rests after a fault, for as long as it does.
 void draw_stopped_banner(const Shown& shown, const Gui& gui);
 
 // A number with its unit, or a dash.

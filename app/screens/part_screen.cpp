@@ -100,16 +100,15 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
         const PartDesign& design = tissue.designs[i];
         ImGui::PushStyleColor(ImGuiCol_Text, i == 0 ? kInk : kLag);
         ImGui::Text("%s  %s N", i == 0 ? "a" : "b", fixed(work.force_N[i], 2).c_str());
-        ImGui::Text("   %s mm", fixed(1e3 * work.depth_m[i], 2).c_str());
+        // the mark of a warning, which stands below
+        ImGui::Text("   %s mm%s", fixed(1e3 * work.depth_m[i], 2).c_str(),
+                    scene::doubt_of(tissue, work, i).empty() ? "" : " !");
         ImGui::PopStyleColor();
         if (design.button) paragraph(work.button[i].on ? words::kButtonOn : words::kButtonOff);
     }
     const bool air = shown.state.touch.down && !work.touching;
-    bool doubtful = false;
-    for (std::size_t i = 0; i < tissue.designs.size(); ++i)
-        doubtful = doubtful || !scene::doubt_of(tissue, work, i).empty();
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.84f, 0.35f, 1.0f));
-    wrapped_text(air ? words::kPressesAir : doubtful ? words::kNoMethodHere : "");
+    wrapped_text(air ? words::kPressesAir : "");
     ImGui::PopStyleColor();
 }
 

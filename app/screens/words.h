@@ -301,7 +301,6 @@ inline constexpr const char* kNewtons = "N";
 inline constexpr const char* kButtonOn = "on";
 inline constexpr const char* kButtonOff = "off";
 inline constexpr const char* kPressesAir = "The pen presses no part";
-inline constexpr const char* kNoMethodHere = "The method does not apply";
 inline constexpr const char* kMethodDoubted = "{}: {} does not apply here: {}.";
 inline constexpr const char* kCellsPending = "Finite cells: {} % computed; beams answer meanwhile.";
 inline constexpr const char* kSimulatedParts = "Simulated: linear elastic, small displacements.";

@@ -140,6 +140,23 @@ TEST_CASE("part edits: an undone first change is out of its file too, and is not
     CHECK(desk.app.view.part.earlier);
 }
 
+TEST_CASE("part edits: the method that was chosen stays after a change and after it is undone") {
+    const Home home;
+    Desk desk(home.scene());
+    const auto method = [&] {
+        const scene::PartTissue& tissue = *scene::parts_of(desk.app.session.plan->tissue);
+        return tissue.methods.at(scene::part_work_of(desk.app.session.state.tissue)->method);
+    };
+    desk.keeper.busy = false;
+    CHECK(method() == parts::Method::timoshenko);  // the scene's
+    while (method() != parts::Method::euler_bernoulli) act(platform::Action::method, desk.window, desk.app);
+    for (const PartWish::Kind change : {PartWish::Kind::edit, PartWish::Kind::undo}) {
+        wish(change, desk);
+        follow_parts(desk.window, desk.gui, desk.app);
+        CHECK(method() == parts::Method::euler_bernoulli);
+    }
+}
+
 TEST_CASE(
     "part edits: a push button has no finite cells to wait for, and the screen says that its shape does not answer") {
     const Home home;

@@ -335,6 +335,21 @@ TEST_CASE("live: a test of parts does not turn them, since it hides nothing") {
     CHECK(desk.app.session.scene.mapping.rotate_deg == 0);
 }
 
+TEST_CASE("live: in a scene with a random turn the next one cannot be told from this one, and is another") {
+    Desk desk(PALPA_SOURCE_DIR "/assets/scenes/random-turn.json");
+    const auto turn = [&] {
+        const Mapping& mapping = desk.app.session.scene.mapping;
+        return mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
+    };
+    std::set<int> steps;
+    for (int i = 0; i < 200; ++i) {
+        const int before = turn();
+        turn_tissue(desk.window, desk.app);
+        steps.insert((turn() - before + 8) % 8);
+    }
+    CHECK(steps == std::set<int>{1, 2, 3, 4, 5, 6, 7});
+}
+
 TEST_CASE("live: a scene with a random turn is drawn in all eight, another one stays as it is") {
     Scene scene = load_scene(PALPA_SOURCE_DIR "/assets/scenes/random-turn.json");
     REQUIRE(scene.mapping.random_turn);
