@@ -160,7 +160,7 @@ Response beam_response(const Part& part, const PartLoad& load, const ResponseReq
     const std::vector<Station> stations = stations_of(part, load, named, kBeamStations);
     Response out;
     start_response(part, stations, request, out);
-    out.validity = beam_validity(part, load, request.method);
+    out.validity = beam_validity(part, named, load, request.method);
     const double end_m = load_place_m(part, named.clamped_low ? stations.back().load : stations.front().load);
     const PartBeam beam = beam_of(part, load, end_m);
     if (!beam.why_not.empty()) throw files::bad_input(part.file, "axis", beam.why_not, "a beam to its free end");

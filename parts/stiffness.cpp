@@ -195,8 +195,7 @@ const char* name_of(Method method) {
     return "";
 }
 
-Validity beam_validity(const Part& part, const PartLoad& load, Method method) {
-    const PartBeam beam = beam_of(part, load);
+Validity beam_validity(const Part& part, const PartBeam& beam, const PartLoad& load, Method method) {
     const auto judge = [&](double force_N) {
         PartLoad there = load;
         there.force_N = force_N;

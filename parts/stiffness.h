@@ -13,6 +13,7 @@
 namespace palpa::parts {
 
 struct CellModel;  // cell_model.h
+struct PartBeam;   // beam_model.h
 
 // paper                        the torsion spring by which the paper replaces a beam (parts/beam_model.h); never applies
 // euler_bernoulli, timoshenko  the part as a clamped beam along `axis` (mechanics/beam.h)
@@ -56,8 +57,9 @@ struct Validity {
     std::string why_not;                          // why not beyond it
 };
 
-// Of paper, euler_bernoulli and timoshenko: up to where stiffness_of() says that the method applies, found by bisection to 1 %.
-Validity beam_validity(const Part& part, const PartLoad& load, Method method);
+// Of paper, euler_bernoulli and timoshenko, for the part as the beam that beam_of() finds: up to where stiffness_of() says that
+// the method applies, found by bisection to 1 %.
+Validity beam_validity(const Part& part, const PartBeam& beam, const PartLoad& load, Method method);
 
 // Of finite cells, by the solution u_m for 1 N; why_not is one of kCellLimits.
 inline constexpr const char* kCellLimits[] = {
