@@ -197,7 +197,7 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
     refused("run " + (folder / "bad.json").string() + " --replay " + kTrace + " --headless",
             "name: found 3, expected a text");
     refused("run --headless --replay " + (folder / "none.tsv").string(), "none.tsv: cannot be read");
-    refused("run --headless --replay " + (folder / "bad.tsv").string(), "bad.json");
+    refused("run --headless --replay " + (folder / "bad.tsv").string(), "bad.tsv: line 1: found the columns");
     refused("maps info " + folder.path().string(), "map.json: cannot be read");
     refused("maps info " + std::string(5000, 'm'), "found a name that is too long");
     refused("maps import " + (folder / "comma.csv").string() + " -o " + (folder / "n.map").string(),
