@@ -102,7 +102,7 @@ void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matr
     out.stiffness_N_per_m = 1.0 / compliance;
     out.cells = static_cast<std::int64_t>(model.cells.place.size());
     judge_strain(greatest_strain(model, u_m), load.force_N, out);
-    if (is_one_cell_thick(model)) out.why_not = kCellLimits[4];
+    if (is_one_cell_thick(model)) out.why_not = kOneCellAcross;
 }
 
 // The displacement at the tip by the beam's method, m.
@@ -229,16 +229,16 @@ Validity beam_validity(const Part& part, const PartBeam& beam, const PartLoad& l
 
 Validity cell_validity(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
                        const Eigen::Matrix3Xd& u_m, double compliance_m_per_N) {
-    if (is_one_cell_thick(model)) return {0.0, kCellLimits[4]};
+    if (is_one_cell_thick(model)) return {0.0, kOneCellAcross};
     const CellStrain unit = greatest_strain(model, u_m);
     Validity out;
     const auto limit = [&](double to_m, const char* why_not) {
         if (to_m < out.to_m) out = {to_m, why_not};
     };
-    limit(compliance_m_per_N * kMostTurn_deg / (kDegrees * unit.rotation_rad), kCellLimits[1]);
-    limit(compliance_m_per_N * kRed / unit.strain, kCellLimits[2]);
+    limit(compliance_m_per_N * kMostTurn_deg / (kDegrees * unit.rotation_rad), kCellsTurn);
+    limit(compliance_m_per_N * kRed / unit.strain, kCellsStrain);
     if (held_on_both_sides(model.level, load_N, largest_axis(load.direction)))
-        limit(kMostHeldDepth * height_along_m(part, load), kCellLimits[3]);
+        limit(kMostHeldDepth * height_along_m(part, load), kHeldPartStretches);
     return out;
 }
 

@@ -62,10 +62,13 @@ struct Validity {
 Validity beam_validity(const Part& part, const PartBeam& beam, const PartLoad& load, Method method);
 
 // Of finite cells, by the solution u_m for 1 N; why_not is one of kCellLimits.
-inline constexpr const char* kCellLimits[] = {
-    "", "cells turn by more than 15 degrees", "strains are above 25 %, which is not small",
-    "held on both sides of the load, it stretches, which small displacements leave out",
-    "one cell across the part does not bend as the part does; smaller cells are needed"};
+inline constexpr const char* kCellsTurn = "cells turn by more than 15 degrees";
+inline constexpr const char* kCellsStrain = "strains are above 25 %, which is not small";
+inline constexpr const char* kHeldPartStretches =
+    "held on both sides of the load, it stretches, which small displacements leave out";
+inline constexpr const char* kOneCellAcross =
+    "one cell across the part does not bend as the part does; smaller cells are needed";
+inline constexpr const char* kCellLimits[] = {"", kCellsTurn, kCellsStrain, kHeldPartStretches, kOneCellAcross};
 Validity cell_validity(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
                        const Eigen::Matrix3Xd& u_m, double compliance_m_per_N);
 

@@ -94,7 +94,7 @@ void add_responses(const PartOptions& options, const mechanics::Progress& progre
 // A beam that the finite cells contradict is none.
 void compare_with_cells(PartDesign& design) {
     const parts::Response& cells = design.responses.back();
-    if (cells.method != Method::voxels || !(cells.validity.to_m > 0.0)) return;
+    if (cells.method != Method::voxels || !cells.converged || !(cells.validity.to_m > 0.0)) return;
     const double cells_m_per_N = cells.compliance_m_per_N[cells.named];
     for (parts::Response& beam : design.responses) {
         const bool apart = std::abs(beam.compliance_m_per_N[beam.named] / cells_m_per_N - 1.0) > parts::kMostApart;

@@ -218,17 +218,21 @@ void sample_surface(const PartTissue&, const SurfaceEffect&, const Contact& cont
     shape.n_x = shape.n_y = 0;
 }
 
-std::string_view doubt_of(const PartTissue& tissue, const PartWork& work, std::size_t design) {
+std::optional<PartDoubt> doubt_of(const PartTissue& tissue, const PartWork& work, std::size_t design) {
     const PartDesign& its = tissue.designs[design];
-    if (its.button) return {};
+    if (its.button) return std::nullopt;
     const Response& response = its.responses[work.method];
+    if (response.validity.to_m == 0.0) return PartDoubt{0.0, response.validity.why_not};
     const double to_m = parts::applies_to_m(response, work.station[design]);
-    return to_m == 0.0 || work.depth_m[design] > to_m ? std::string_view(response.validity.why_not) : "";
+    if (!(work.depth_m[design] > to_m)) return std::nullopt;
+    return PartDoubt{to_m, response.validity.why_not};
 }
 
 const char* next_method(const PartTissue& tissue, PartWork& work) {
     if (work.down || tissue.methods.size() < 2) return nullptr;
     work.method = (work.method + 1) % tissue.methods.size();
+    // each method has stations of its own, beams more than cells
+    for (std::size_t i = 0; i < tissue.designs.size(); ++i) work.station[i] = station_of(tissue, i, work);
     return parts::name_of(tissue.methods[work.method]);
 }
 

@@ -117,9 +117,13 @@ bool in_plane(const PartTissue& tissue);
 // Whether there is material of the design at p_m of the tissue's plane, at any depth.
 bool is_on_part(const PartDesign& design, const Eigen::Vector2d& p_m);
 
-// Why the present answer of a design is not to be trusted: the method never applies to it, or not as far as it is displaced
-// now (parts::Validity); "" if it applies.
-std::string_view doubt_of(const PartTissue& tissue, const PartWork& work, std::size_t design);
+// How far the chosen method applies to a design where it is pressed now, if it never does (0), or not as far as the design is
+// displaced (parts::Validity); nothing if it applies.
+struct PartDoubt {
+    double to_m = 0.0;
+    std::string_view why_not;
+};
+std::optional<PartDoubt> doubt_of(const PartTissue& tissue, const PartWork& work, std::size_t design);
 
 // Takes the next method, unless something presses. Returns its name; nullptr if it stays.
 const char* next_method(const PartTissue& tissue, PartWork& work);

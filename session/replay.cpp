@@ -102,7 +102,8 @@ files::Json run_json(const Session& session, std::int64_t frames, const scene::M
     const scene::Counters& counters = sum.counters;
     files::Json json;
     json["scene"] = scene.name;
-    if (!session.earlier_scenes.empty()) json["earlier_scenes"] = session.earlier_scenes;
+    for (const std::string& pressed : session.pressed_scenes)
+        if (pressed != scene.name) json["earlier_scenes"].push_back(pressed);
     json["samples"] = counters.samples;
     json["frames"] = frames;
     json["steps"] = counters.steps;

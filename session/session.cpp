@@ -202,6 +202,15 @@ void keep_last_place(const scene::View& before, const scene::View& now, Trial& t
     trial.last_px = now.centre_px + now.input_px_per_m.cwiseProduct(now.axes * (p_m - now.area.centre_m));
 }
 
+// Before the state is replaced: its counts stay in those of the run.
+void add_to_totals(Session& session) {
+    std::vector<std::string>& pressed = session.pressed_scenes;
+    const std::string& name = session.scene.name;
+    if (session.state.extremes.force_N > 0.0 && std::find(pressed.begin(), pressed.end(), name) == pressed.end())
+        pressed.push_back(name);
+    session.before = session.before + session.state;
+}
+
 }  // namespace
 
 std::vector<platform::TracedPart> traced_parts(const scene::Scene& scene) {
@@ -235,11 +244,7 @@ Totals operator+(const Totals& before, const scene::State& trial) {
 void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, const scene::ScreenArea& screen,
                    Session& session) {
     scene::State state = scene::start(scene, *plan, screen);
-    std::vector<std::string>& earlier = session.earlier_scenes;
-    const bool other = session.plan && scene.name != session.scene.name && session.state.extremes.force_N > 0.0;
-    if (other && std::find(earlier.begin(), earlier.end(), session.scene.name) == earlier.end())
-        earlier.push_back(session.scene.name);
-    session.before = session.before + session.state;
+    add_to_totals(session);
     Trial trial = make_trial(*plan, session.trial.mode);
     session.scene = std::move(scene);
     session.plan = std::move(plan);
@@ -249,7 +254,7 @@ void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, 
 
 void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, TrialMode mode, Session& session) {
     ++session.trials;
-    session.before = session.before + session.state;
+    add_to_totals(session);
     session.state = scene::start(session.scene, *session.plan, screen_of(info));
     session.state.time_every = 16;
     session.trial = make_trial(*session.plan, mode);

@@ -43,7 +43,7 @@ struct Session {
     std::shared_ptr<const scene::Plan> plan = std::make_shared<const scene::Plan>();
     scene::State state;
     Totals before;                            // of the trials that are over
-    std::vector<std::string> earlier_scenes;  // that were pressed, by name
+    std::vector<std::string> pressed_scenes;  // of those trials, by name
     Trial trial;
     std::string device;  // for the log
     int trials = 0;      // that have begun

@@ -52,7 +52,8 @@ files::Json exclusion_columns() {
 
 files::Json replacement_columns() {
     return {{"participant", column_text("code without sub-, of the participant who dropped out and is left out")},
-            {"replaced_by", column_text("code without sub-, of the participant with the same group and orders")},
+            {"replaced_by", column_text("code without sub-, of the participant with the same group and orders; n/a: "
+                                        "frees the place from who has not come")},
             {"reason", column_text("of the experimenter, in words")}};
 }
 

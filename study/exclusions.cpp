@@ -20,6 +20,7 @@ fs::path exclusions_file(const fs::path& directory) { return directory / "exclus
 fs::path replacements_file(const fs::path& directory) { return directory / "replacements.tsv"; }
 
 constexpr const char* kExclusionHeader = "participant\ttrial\treason\n";
+constexpr const char* kNobody = "n/a";  // as replaced_by: who was to take the place has not come, and has lost it
 constexpr const char* kReplacementHeader = "participant\treplaced_by\treason\n";
 
 std::string without_sub(std::string_view code) {
@@ -105,12 +106,24 @@ std::vector<Exclusion> read_exclusions(const fs::path& directory) {
 
 std::vector<Replacement> read_replacements(const fs::path& directory) {
     std::vector<Replacement> out;
+    std::vector<std::string> notes;
+    const std::vector<Person> people = read_people(directory, notes);
     read_rows(replacements_file(directory), kReplacementHeader, [&](const files::Table& table) {
         const std::size_t participant = table.column("participant"), by = table.column("replaced_by");
-        Replacement one{code_in(table, participant), code_in(table, by), reason_in(table)};
+        Replacement one{code_in(table, participant), "", reason_in(table)};
         const auto earlier = std::find_if(
             out.begin(), out.end(), [&](const Replacement& other) { return other.participant == one.participant; });
-        if (earlier != out.end()) out.erase(earlier);  // who was to come had not come
+        if (table.field(by) == kNobody) {
+            if (earlier == out.end()) table.fail(by, "a code: nobody has this place yet");
+            out.erase(earlier);  // who was to come had not come
+            return;
+        }
+        one.replaced_by = code_in(table, by);
+        if (earlier != out.end()) {
+            if (is_among(people, earlier->replaced_by))
+                table.fail(participant, "each participant once: " + earlier->replaced_by + " has this place already");
+            out.erase(earlier);
+        }
         for (const Replacement& other : out) {
             if (other.replaced_by == one.replaced_by) table.fail(by, "a participant who replaces nobody else");
         }
@@ -159,6 +172,7 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
     if (is_among(people, replacement.replaced_by))
         throw files::bad_input("--by", "", files::shown(replacement.replaced_by),
                                "a code that is not yet" + among + ": who has begun keeps the place in the plan");
+    std::string lines;
     for (const Replacement& other : read_replacements(directory)) {
         if (other.participant == replacement.participant && is_among(people, other.replaced_by))
             throw files::bad_input("--participant", "", files::shown(other.participant),
@@ -166,9 +180,12 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
         if (other.replaced_by == replacement.replaced_by)
             throw files::bad_input("--by", "", files::shown(other.replaced_by),
                                    "another code: this one replaces " + other.participant + " already");
+        // if that one comes all the same, these lines still say who has the place
+        if (other.participant == replacement.participant)
+            lines = other.participant + "\t" + kNobody + "\t" + other.replaced_by + " has not come\n";
     }
-    append_line(replacements_file(directory), kReplacementHeader,
-                replacement.participant + "\t" + replacement.replaced_by + "\t" + reason);
+    lines += replacement.participant + "\t" + replacement.replaced_by + "\t" + reason;
+    append_line(replacements_file(directory), kReplacementHeader, lines);
 }
 
 Numbers numbers_of(const std::vector<Person>& people, const std::vector<Replacement>& replacements) {

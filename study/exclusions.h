@@ -28,9 +28,9 @@ struct Replacement {
 };
 
 // Read the two tables; nothing if there is no such file. Throw InputError with the line for other columns, a code, number
-// or reason that is none, a line that is there twice, and a participant who replaces two. Of several replacements of one
-// participant the last counts: who was to come before had not come, and has a place of their own in the plan if they
-// come later.
+// or reason that is none, a line that is there twice, a participant who replaces two, and a second replacement of somebody
+// whose place another participant has begun to take. A line with replaced_by n/a frees the place from who has not come; they
+// have a place of their own in the plan if they come later.
 std::vector<Exclusion> read_exclusions(const std::filesystem::path& directory);
 std::vector<Replacement> read_replacements(const std::filesystem::path& directory);
 

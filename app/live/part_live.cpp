@@ -132,7 +132,7 @@ void take_chosen_method(platform::Window& window, App& app) {
     const scene::PartTissue* tissue = scene::parts_of(app.session.plan->tissue);
     const std::optional<parts::Method> chosen = app.parts.method;
     if (tissue == nullptr || !chosen || study_of(app.doing) != nullptr) return;
-    if (app.session.state.touch.down || waits_for_keeper(app)) return;
+    if (app.session.state.touch.down || app.session.trial.finished || waits_for_keeper(app)) return;
     const std::size_t methods = tissue->methods.size();
     if (std::find(tissue->methods.begin(), tissue->methods.end(), *chosen) == tissue->methods.end()) return;
     for (std::size_t i = 0; i < methods && method_now(app) != *chosen; ++i) act(platform::Action::method, window, app);

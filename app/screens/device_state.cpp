@@ -13,7 +13,7 @@ namespace palpa::app {
 namespace {
 
 // What a stop or a fault means for the devices of this scene; empty if there is none.
-std::string stopped_words(const Shown& shown) {
+std::string banner_words(const Shown& shown) {
     const bool study = study_of(shown.doing) != nullptr;
     // the screens of the devices say it themselves
     if (std::holds_alternative<WatchingTactile>(shown.doing) || std::holds_alternative<WatchingTangible>(shown.doing))
@@ -77,7 +77,7 @@ void draw_stop_or_release(const DriveState& drive, bool stopped, float width_px,
 }
 
 void draw_stopped_banner(const Shown& shown, const Gui& gui) {
-    const std::string text = stopped_words(shown);
+    const std::string text = banner_words(shown);
     if (text.empty()) return;
     const WindowSize window = gui.size_px();
     const float gap_px = 2.0f * gui.mm();

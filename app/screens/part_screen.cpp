@@ -102,7 +102,7 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
         ImGui::Text("%s  %s N", i == 0 ? "a" : "b", fixed(work.force_N[i], 2).c_str());
         // the mark of a warning, which stands below
         ImGui::Text("   %s mm%s", fixed(1e3 * work.depth_m[i], 2).c_str(),
-                    scene::doubt_of(tissue, work, i).empty() ? "" : " !");
+                    scene::doubt_of(tissue, work, i) ? " !" : "");
         ImGui::PopStyleColor();
         if (design.button) paragraph(work.button[i].on ? words::kButtonOn : words::kButtonOff);
     }
@@ -135,11 +135,14 @@ void draw_methods(const PartTissue& tissue, const PartWork& work) {
 // Why what the chosen method says of each design is not to be trusted.
 void draw_doubts(const PartTissue& tissue, const PartWork& work) {
     for (std::size_t i = 0; i < tissue.designs.size(); ++i) {
-        const std::string_view why = scene::doubt_of(tissue, work, i);
-        if (!why.empty())
-            warning_paragraph(
-                words::filled(words::kMethodDoubted,
-                              {i == 0 ? "a" : "b", parts::name_of(tissue.methods[work.method]), std::string(why)}));
+        const std::optional<scene::PartDoubt> doubt = scene::doubt_of(tissue, work, i);
+        if (!doubt) continue;
+        const char* method = parts::name_of(tissue.methods[work.method]);
+        const char* design = i == 0 ? "a" : "b";
+        const std::string why(doubt->why_not);
+        warning_paragraph(doubt->to_m > 0.0 ? words::filled(words::kMethodAppliesTo,
+                                                            {design, method, fixed(1e3 * doubt->to_m, 2), why})
+                                            : words::filled(words::kMethodNeverApplies, {design, method, why}));
     }
 }
 

@@ -128,6 +128,9 @@ TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sideca
     CHECK(contains(said("1280.0", "0.5", "t.json"), "t.json: screen_px: found 0.5"));
     CHECK(contains(said("screen_px", "screen", "t.json"), "t.json: screen: found an unknown key"));
     const TemporaryFolder folder;
+    TraceWriter(folder / "whole.tsv", {}).write(full());
+    std::filesystem::remove(folder / "whole.json");
+    CHECK(contains(message_of([&] { read_trace(folder / "whole.tsv"); }), "whole.json: cannot be read"));
     write_text_atomically(folder / "t.tsv", "t_host_s\n");  // a table of another kind
     CHECK(contains(message_of([&] { read_trace(folder / "t.tsv"); }), "t.tsv: line 1: found"));
 }

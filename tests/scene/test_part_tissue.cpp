@@ -111,15 +111,33 @@ TEST_CASE("part tissue: a press beyond what its method applies to is doubted, an
     const double most_N = applies_to_m(response, there) / compliance_at(response, there);
     const auto doubt = [&](double force_N) {
         pressed(tissue, press_on(tissue, 0, u_m, 1e-3, force_N), work);
-        return std::string(doubt_of(tissue, work, 0));
+        return doubt_of(tissue, work, 0);
     };
-    CHECK(doubt(0.9 * most_N) == "");
-    CHECK(doubt(1.1 * most_N) == response.validity.why_not);
+    CHECK_FALSE(doubt(0.9 * most_N));
+    REQUIRE(doubt(1.1 * most_N));
+    CHECK(doubt(1.1 * most_N)->why_not == response.validity.why_not);
+    CHECK(doubt(1.1 * most_N)->to_m == close_to(most_N * compliance_at(response, there)));
     CHECK(response.validity.why_not != "");
     pressed(tissue, {}, work);
-    CHECK(doubt_of(tissue, work, 0) == "");
+    CHECK_FALSE(doubt_of(tissue, work, 0));
     while (tissue.methods[work.method] != parts::Method::paper) REQUIRE(next_method(tissue, work) != nullptr);
-    CHECK(doubt_of(tissue, work, 0) != "");
+    REQUIRE(doubt_of(tissue, work, 0));
+    CHECK(doubt_of(tissue, work, 0)->to_m == 0.0);
+}
+
+TEST_CASE(
+    "part tissue: a method that is chosen between presses has a station of its own: cells have fewer than beams") {
+    Designs designs;
+    ::setenv("XDG_CACHE_HOME", designs.folder.path().c_str(), 1);
+    designs.options({"a.json"}).method = parts::Method::voxels;
+    const PartTissue tissue = designs.made();
+    PartWork work = make_work(tissue);
+    while (tissue.methods[work.method] != parts::Method::timoshenko) REQUIRE(next_method(tissue, work) != nullptr);
+    pressed(tissue, press_on(tissue, 0, 0.019, 1e-3, 1.0), work);
+    pressed(tissue, {}, work);
+    REQUIRE(std::string(next_method(tissue, work)) == "voxels");
+    CHECK(work.station[0].low < tissue.designs[0].responses[work.method].station_m.size());
+    CHECK_FALSE(doubt_of(tissue, work, 0));
 }
 
 TEST_CASE("part tissue: beside the part nothing is pressed; pens that are no numbers end the touch") {

@@ -337,10 +337,15 @@ TEST_CASE("session: what a run reports covers all its trials, and not the last o
     CHECK(begun["max_depth_mm"] == first["max_depth_mm"]);
     CHECK(begun["samples"] == first["samples"]);
     Scene scene = person.session.scene;
+    scene.name = "another";
+    const std::string pressed = person.session.scene.name;
+    CHECK_FALSE(begun.contains("earlier_scenes"));
     change_tissue(std::move(scene), person.session.plan, screen_of(person.info), person.session);
     begin_trial({}, person.info, TrialMode::test, person.session);
     person.stroke(0.0, 0.0, 0.4);
     const Json last = run_json(person.session, 0, {});
+    CHECK(last["scene"] == "another");
+    CHECK(last["earlier_scenes"] == Json{pressed});  // also where its last trial had no press
     CHECK(last["max_force_N"] == first["max_force_N"]);
     CHECK(last["samples"] == 38);
     CHECK(last["steps"].get<std::int64_t>() > first["steps"].get<std::int64_t>());

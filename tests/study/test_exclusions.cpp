@@ -166,4 +166,17 @@ TEST_CASE("replacements: who was to take a place and never came is replaced by a
     CHECK(progress_of(log, protocol, "22").plan.number == 2);
     const std::string report = report_markdown(make_report(read_study(log), {}));
     CHECK(contains(report, "Of 6 planned tests 6 are finished and 0 are missing"));
+    append_synced(log / "replacements.tsv", "02\t23\tby hand\n");
+    CHECK(contains(message_of([&] { read_replacements(log); }),
+                   "line 5, participant: found '02', expected each participant "
+                   "once: 22 has this place already"));
+}
+
+TEST_CASE("replacements: only a place that somebody was to take can be freed") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    take_part(log, protocol, "01", 2);
+    append_synced(log / "replacements.tsv", "participant\treplaced_by\treason\n01\tn/a\tby hand\n");
+    CHECK(contains(message_of([&] { read_replacements(log); }), "line 2, replaced_by: found 'n/a', expected a code"));
 }

@@ -23,6 +23,16 @@ TEST_CASE("virtual world: force and slope carry the scene's scales, and nothing 
     CHECK(world_force(known.world, {0.0, 0.0}, 1.0, work).saturated);
 }
 
+TEST_CASE("virtual world: a press on the tissue is one on the device by the scene's force_scale") {
+    scene::Scene scene = scene::read_scene(kAssets / "scenes" / "default.json", kAssets);
+    const scene::Plan plan = scene::make_plan(scene);
+    scene.stiffness_scale = 3.0;
+    scene.tangible.emplace().force_scale = 0.25;
+    const World world = make_world(scene, plan);
+    CHECK(world.finger_share == 0.25);  // the tissue's own stiffness is in its depth already
+    CHECK(world.force_N_per_N == 0.75);
+}
+
 TEST_CASE("virtual world: a map's force at a depth is the force that reaches this depth") {
     const scene::Scene scene = scene::read_scene(kAssets / "scenes" / "default.json", kAssets);
     const scene::Plan plan = scene::make_plan(scene);

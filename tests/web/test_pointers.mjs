@@ -26,6 +26,8 @@ test('pen: pressures 0.1 to 0.9 reach force, depth and avatar', () => withPage({
         assert.ok(Number(touching[i].x_mm) > Number(touching[i - 1].x_mm));
     }
     near(Number(touching[9].avatar_x_mm), Number(touching[9].x_mm) - Number(touching[9].lag_mm), 1e-6);
+    // what was there when the trial began is not known, and not guessed
+    assert.deepEqual(new Set((await rows(page, 1, 'events')).map((row) => row.device_id)), new Set(['n/a']));
 }));
 
 test('two fingers: each has its own pressure; the contact size is what a profile of contact areas reads', () => withPage({profile: 'xoom-finger.json'}, async (browser) => {

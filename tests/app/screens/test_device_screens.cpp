@@ -108,6 +108,38 @@ TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running,
     }
 }
 
+TEST_CASE("screens: a fault of a device that goes by itself is told below the trial, while the device runs") {
+    Session session;
+    session.scene = load_scene("");
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    begin_trial({}, read_trace(default_trace()).info, TrialMode::practice, session);
+    const Case c{1280, 800, kMissing, false};
+    OffScreen off_screen = screen_of(c);
+    TactileShown tactile = pressed_tactile();
+    TangibleShown soft;
+    soft.runs = true;
+    // the pixels of the lowest rows
+    const auto band = [&](const TactileShown* pins, const TangibleShown* tangible) {
+        Screens trial;
+        trial.tactile = pins;
+        trial.tangible = tangible;
+        State state = session.state;
+        const Pixels picture = draw(session, {}, trial, off_screen, state);
+        const auto row = static_cast<std::size_t>(3 * picture.width);
+        return std::vector<unsigned char>(picture.rgb.end() - static_cast<std::ptrdiff_t>(50 * row), picture.rgb.end());
+    };
+    const auto quiet = band(&tactile, nullptr);
+    tactile.moment.fault = "nothing comes from the arm";
+    CHECK(band(&tactile, nullptr) != quiet);
+    tactile.runs = false;
+    CHECK(band(&tactile, nullptr) == quiet);
+    const auto soft_quiet = band(nullptr, &soft);
+    soft.moment.fault = "nothing comes from the sensor";
+    CHECK(band(nullptr, &soft) != soft_quiet);
+    soft.moment.held = true;
+    CHECK(band(nullptr, &soft) == soft_quiet);
+}
+
 TEST_CASE("arm and pins: the link of an arm that is silent has the time since its last answer, and no round trips") {
     TactileMoment moment = pressed_tactile().moment;
     CHECK(link_text(moment) == "0.21 ms (p99 0.48), 3 lost");
