@@ -87,10 +87,11 @@ void ActuatorLine::Works::publish(PinState now) {
     copy.reconnects = reconnects;
 }
 
+// Until it is proved, a line that was in trouble stays so: a fault lasts until the actuators are driven again.
 void ActuatorLine::Works::prove() {
-    publish(PinState::proving);
     protocol->bad_in_a_row = 0;
     protocol->health.relaxed = false;
+    publish(state);
     tried_s = steady_s();
     publish(protocol->prove(*port));
 }

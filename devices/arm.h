@@ -89,6 +89,11 @@ struct ArmDevice {
 // Reads a device file; `compensation` is relative to it. Throws InputError with file and key.
 ArmDevice read_arm_device(const std::filesystem::path& path);
 
+// Whether the force sensor that this arm follows says nothing: without it a hand that presses would press nothing.
+inline bool is_unfelt(const ArmDevice& arm, const ArmFeedback& feedback) noexcept {
+    return arm.sensor && arm.impedance == ArmImpedance::high && !(feedback.has_sensor > 0.5);
+}
+
 // The loop delay above which a rendered stiffness may oscillate under a soft hand: stiffness x delay > 8 N s/m (quiet up
 // to it, oscillating at 12, in a simulation with a hand of 0.3 to 3 N/mm). Returns the warning, or "".
 inline constexpr double kMostStiffnessDelay_N_s_per_m = 8.0;

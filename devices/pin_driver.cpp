@@ -17,6 +17,8 @@ namespace {
 constexpr double kUnsent_s = 0.1;
 constexpr double kOpenAgain_s = 0.5;
 constexpr int kErrorsInARow = 20;
+constexpr int kMissingInARow = 3;        // and for
+constexpr double kBoardSilent_s = 0.25;  // a servo needs as long for its stroke
 
 void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(std::max(seconds, 0.0))); }
 
@@ -40,6 +42,8 @@ struct PinDriver::Works {
     std::unique_ptr<PinLine> line;
     PinHealth health;
     std::array<int, kMostBoards> errors_in_a_row{};
+    std::array<int, kMostBoards> missing_in_a_row{};
+    std::array<double, kMostBoards> heard_s{};
     std::size_t asked = 0;  // the board that is asked in this frame
     double tried_s = 0.0;
     PinFrame frame;
@@ -65,13 +69,15 @@ void PinDriver::Works::publish(PinState now) {
     copy = health;
 }
 
+// Until it is proved, a line that was in trouble stays so: a fault lasts until the pins are driven again.
 void PinDriver::Works::prove() {
-    publish(PinState::proving);
     errors_in_a_row.fill(0);
+    missing_in_a_row.fill(0);
     const std::span<BoardHealth> boards(health.board.data(), health.boards);
     prove_boards(device, *line, boards);
     PinState proved = state_of(device, *line, boards);
     if (proved == PinState::driving && !set_speeds(device, *line)) proved = PinState::gone;
+    heard_s.fill(steady_s());
     publish(proved);
 }
 
@@ -95,17 +101,18 @@ void PinDriver::Works::ask_next() {
     std::uint16_t errors = 0;
     if (!ask_errors(device.boards[asked].address, 0.5 * device.frame_s, *line, errors)) {
         ++board.missing;
-        ++errors_in_a_row[asked];
-    } else if (errors != 0) {
-        board.errors = static_cast<std::uint16_t>(board.errors | errors);
-        ++board.error_replies;
-        ++errors_in_a_row[asked];
+        ++missing_in_a_row[asked];
     } else {
-        errors_in_a_row[asked] = 0;
+        missing_in_a_row[asked] = 0;
+        heard_s[asked] = steady_s();
+        board.errors = static_cast<std::uint16_t>(board.errors | errors);
+        board.error_replies += errors != 0;
+        errors_in_a_row[asked] = errors != 0 ? errors_in_a_row[asked] + 1 : 0;
     }
+    const bool silent = missing_in_a_row[asked] >= kMissingInARow && steady_s() - heard_s[asked] > kBoardSilent_s;
     const bool faulty = errors_in_a_row[asked] >= kErrorsInARow;
     asked = (asked + 1) % health.boards;
-    publish(line->gone ? PinState::gone : faulty ? PinState::faulty : PinState::driving);
+    publish(line->gone ? PinState::gone : silent ? PinState::no_answer : faulty ? PinState::faulty : PinState::driving);
 }
 
 void PinDriver::Works::drive_frame() {

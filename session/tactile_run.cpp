@@ -36,11 +36,14 @@ void choose_input(std::span<const devices::PressRow> press, tactile::TactilePlan
     plan.input = std::isfinite(press.front().force_N) ? tactile::InputKind::force : tactile::InputKind::depth;
 }
 
-const char* fault_words(devices::Fault fault, bool arm_silent, bool pins_silent) {
+const char* fault_words(devices::Fault fault, const Silent& silent) {
     if (fault == devices::Fault::none) return "";
-    if (fault != devices::Fault::silence || (!arm_silent && !pins_silent)) return devices::text(fault).data();
-    if (!pins_silent) return "nothing comes from the arm";
-    return arm_silent ? "nothing comes from the arm, nor from the pins" : "nothing comes from the pins";
+    if (fault != devices::Fault::silence) return devices::text(fault).data();
+    if (silent.arm) return silent.pins ? "nothing comes from the arm, nor from the pins" : "nothing comes from the arm";
+    if (silent.sensor)
+        return silent.pins ? "nothing comes from the force sensor, nor from the pins"
+                           : "nothing comes from the force sensor";
+    return silent.pins ? "nothing comes from the pins" : devices::text(fault).data();
 }
 
 std::int64_t steps_of(std::span<const devices::PressRow> press) {
@@ -74,8 +77,8 @@ void TactileSink::take(const StepRecord& record, std::span<const double> reached
 // Into the file at once: it is what tells which rows of the other files were not rendered.
 void TactileSink::log_fault(const StepRecord& record) {
     fault_ = record.fault;
-    const std::string_view what = fault_ == devices::Fault::none ? "none" : devices::text(fault_);
-    faults_->append(files::number_text(record.command.time_s) + '\t' + std::string(what) + '\n');
+    const std::string what = fault_ == devices::Fault::none ? "none" : record.fault_words;
+    faults_->append(files::number_text(record.command.time_s) + '\t' + what + '\n');
     faults_->flush();
 }
 

@@ -94,12 +94,20 @@ class TactileThread {
         record_.has_sensor = arm.has_sensor;
         record_.round_trip_s = arm.round_trip_s;
         record_.arm_age_s = arm.age_s;
-        record_.pins_silent = devices::fault_of(port_.pins().state) == devices::Fault::silence;
         record_.lost = port_.link() != nullptr ? port_.link()->feedback.lost : 0;
         record_.fault = port_.fault();
+        record_.fault_words = fault_words(record_.fault, silent_now(arm));
         record_.step_ns = static_cast<double>(files::steady_ns() - before_ns);
         if (sends && !ring_->push(record_)) ++lost_;
         return sends;
+    }
+
+    Silent silent_now(const devices::ArmFeedback& arm) const noexcept {
+        Silent silent;
+        silent.arm = plan_->arm && arm.age_s > plan_->arm->silence_s;
+        silent.sensor = plan_->arm && devices::is_unfelt(*plan_->arm, arm);
+        silent.pins = devices::fault_of(port_.pins().state) == devices::Fault::silence;
+        return silent;
     }
 
     std::shared_ptr<const tactile::TactilePlan> plan_;
@@ -222,7 +230,7 @@ void fill_moment(const tactile::TactilePlan& plan, const StepRecord& record, Tac
     out.over_edge = step.over_edge;
     out.held = step.held;
     const bool arm_silent = plan.arm && record.arm_age_s > plan.arm->silence_s;
-    out.fault = fault_words(record.fault, arm_silent, record.pins_silent);
+    out.fault = record.fault_words;
     out.silent_s = arm_silent ? record.arm_age_s : TactileMoment::kNone;
     out.stopped = devices::latches(record.fault);
     out.lost = record.lost;

@@ -14,10 +14,10 @@ struct StepRecord {
     double has_sensor = 0.0;
     double round_trip_s = 0.0;
     double arm_age_s = 0.0;  // since the arm's last answer
-    bool pins_silent = false;
-    std::int64_t lost = 0;  // packets so far
-    double step_ns = 0.0;   // how long it took; 0: not measured
+    std::int64_t lost = 0;   // packets so far
+    double step_ns = 0.0;    // how long it took; 0: not measured
     devices::Fault fault = devices::Fault::none;
+    const char* fault_words = "";  // static
     bool latched = false;
 };
 
@@ -52,8 +52,15 @@ class TactileSink {
     std::optional<DeviceRowWriter> rows_;
 };
 
-// The fault in words; a silence with the device that is silent. Static.
-const char* fault_words(devices::Fault fault, bool arm_silent, bool pins_silent);
+// What says nothing.
+struct Silent {
+    bool arm = false;
+    bool sensor = false;  // that a high-impedance arm follows
+    bool pins = false;
+};
+
+// The fault in words; a silence with what is silent. Static.
+const char* fault_words(devices::Fault fault, const Silent& silent);
 
 // How many steps of 1 ms a press lasts.
 std::int64_t steps_of(std::span<const devices::PressRow> press);

@@ -38,6 +38,7 @@ class ShapeServer {
         const bool heard = arm_ && arm_->read(newest_);
         fresh_ = fresh_ || heard;
         readings_ += heard;
+        sensed_ = sensed_ || newest_.has_sensor > 0.5;
         const bool commanded = receive();
         const double now_s = steady_s();
         if (driven_ && now_s - commanded_s_ > kLoopSilence_s) {
@@ -87,7 +88,9 @@ class ShapeServer {
             pins_due_s_ = sent_s_ + kPinsEvery_s;
             found_ = fault_of(pins_->health().state);
         }
-        begin_tick(limits_, sent_s_, fresh_ || !arm_, arm_ ? &newest_ : nullptr, guard_, found_);
+        const bool unfelt = sensed_ && rig_.arm && is_unfelt(*rig_.arm, newest_);
+        const Fault found = found_ == Fault::none && unfelt ? Fault::silence : found_;
+        begin_tick(limits_, sent_s_, fresh_ || !arm_, arm_ ? &newest_ : nullptr, guard_, found);
         fresh_ = false;
         if (arm_) {
             guard_arm(limits_, command, guard_);
@@ -135,6 +138,7 @@ class ShapeServer {
     Fault found_ = Fault::none;
     std::int64_t readings_ = 0;
     bool fresh_ = false;
+    bool sensed_ = false;  // the force sensor has had its zero
     bool driven_ = false;
     bool parent_gone_ = false;
     double commanded_s_ = 0.0;

@@ -61,6 +61,7 @@ std::string SimulatorProcess::line() {
 void SimulatorProcess::end() {
     if (pid_ <= 0) return;
     ::kill(pid_, SIGTERM);
+    ::kill(pid_, SIGCONT);  // one that was halted would never end
     ::waitpid(pid_, nullptr, 0);
     pid_ = -1;
 }

@@ -401,6 +401,34 @@ TEST_CASE("guard: arm and pins behind it go where they are told, and rest for go
         guard, [&](const ShapeReport& now) { return now.fault == Fault::stopped && wires.highest_mm() < 0.05; }));
 }
 
+TEST_CASE("guard: an arm that follows a force sensor rests while that sensor says nothing") {
+    for (const ArmImpedance impedance : {ArmImpedance::high, ArmImpedance::low}) {
+        SimulatorProcess arm(PALPA_ARM_SIMULATOR, {}), sensor(PALPA_NETFT_SIMULATOR, {});
+        ShapeRig rig;
+        rig.arm = ArmDevice{};
+        rig.arm->port = std::stoi(arm.port());
+        rig.arm->impedance = impedance;
+        rig.arm->sensor = NetFtOptions{};
+        rig.arm->sensor->host = "127.0.0.1";
+        rig.arm->sensor->port = std::stoi(sensor.port());
+        ShapeGuard guard(rig, PALPA_GUARD);
+        REQUIRE(soon([&] { return guard.poll(), guard.newest().ready; }));
+        const bool follows = impedance == ArmImpedance::high;
+        const Fault expected = follows ? Fault::silence : Fault::none;
+        const auto stays_until = [&](const std::function<bool()>& done) {
+            return soon([&] {
+                guard.send({0.5, 0.0, 0.0, static_cast<double>(ArmMode::force)}, {});
+                guard.poll();
+                return done();
+            });
+        };
+        ::kill(sensor.pid(), SIGSTOP);
+        CHECK(stays_until([&] { return guard.newest().arm.has_sensor < 0.5 && guard.newest().fault == expected; }));
+        ::kill(sensor.pid(), SIGCONT);
+        CHECK(stays_until([&] { return guard.newest().arm.has_sensor > 0.5 && guard.newest().fault == Fault::none; }));
+    }
+}
+
 TEST_CASE("guard: SIGKILL of the program that drives pins brings them to rest") {
     ShapeWires wires;
     const pid_t program = ::fork();

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "devices/force_sensor.h"
+#include "devices/limits.h"
 #include "devices/pin_line.h"
 #include "devices/pins.h"
 #include "devices/simulators/process.h"
@@ -159,6 +160,18 @@ TEST_CASE("pins: a port that is unplugged and plugged in again is proved again a
     PinDevice none = driver.device();
     none.port = (folder / "none").string();
     CHECK_THROWS_WITH_AS(PinDriver{none}, doctest::Contains("cannot be opened"), std::runtime_error);
+}
+
+TEST_CASE("pins: boards that hang stay a fault, also while they are proved again") {
+    SimulatorProcess simulator(PALPA_MAESTRO_SIMULATOR, {kDriverPins});
+    PinDriver driver(device_at(simulator));
+    REQUIRE(wait_for([&] { return driver.state() == PinState::driving; }));
+    ::kill(simulator.pid(), SIGSTOP);
+    REQUIRE(wait_for([&] { return fault_of(driver.state()) != Fault::none; }));
+    for (const double until_s = steady_s() + 2.0; steady_s() < until_s; driver_nap(0.001))
+        REQUIRE(fault_of(driver.state()) != Fault::none);  // reopened several times
+    ::kill(simulator.pid(), SIGCONT);
+    CHECK(wait_for([&] { return driver.state() == PinState::driving; }));
 }
 
 TEST_CASE("pins: a line that loses, doubles and garbles bytes is counted, and no pin leaves its stroke") {

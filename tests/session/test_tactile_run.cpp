@@ -345,11 +345,15 @@ TEST_CASE("tactile live: the loop goes over to a table that a worker makes meanw
 
 TEST_CASE("tactile live: a silence names the device that does not answer") {
     using devices::Fault;
-    CHECK(fault_words(Fault::none, true, true) == std::string());
-    CHECK(fault_words(Fault::silence, true, false) == std::string("nothing comes from the arm"));
-    CHECK(fault_words(Fault::silence, false, true) == std::string("nothing comes from the pins"));
-    CHECK(fault_words(Fault::silence, true, true) == std::string("nothing comes from the arm, nor from the pins"));
-    CHECK(fault_words(Fault::stopped, true, false) == std::string("stopped"));
+    const auto words = [](Fault fault, const Silent& silent) { return std::string(fault_words(fault, silent)); };
+    CHECK(words(Fault::none, {true, false, true}).empty());
+    CHECK(words(Fault::silence, {}) == "nothing comes from the device");
+    CHECK(words(Fault::silence, {true, true, false}) == "nothing comes from the arm");
+    CHECK(words(Fault::silence, {false, true, false}) == "nothing comes from the force sensor");
+    CHECK(words(Fault::silence, {false, false, true}) == "nothing comes from the pins");
+    CHECK(words(Fault::silence, {true, false, true}) == "nothing comes from the arm, nor from the pins");
+    CHECK(words(Fault::silence, {false, true, true}) == "nothing comes from the force sensor, nor from the pins");
+    CHECK(words(Fault::stopped, {true, false, false}) == "stopped");
 }
 
 TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes on; rows are recorded") {
