@@ -59,20 +59,31 @@ LevelsDelivered levels_of(const FitPoints& points, LevelRange range) {
     return levels;
 }
 
-std::size_t slips_in(const Calibration& calibration) {
+Slips slips_in(const Calibration& calibration) {
     const bool log_error = calibration.chosen.error == ErrorModel::log;
+    const auto distance = [&](double a_N, double b_N) { return std::abs(log_error ? std::log(a_N / b_N) : a_N - b_N); };
+    struct Off {
+        double predicted, fitted, level;
+    };
+    std::vector<Off> all;
     std::vector<double> off;
     for (Eigen::Index i = 0; i < calibration.points.level.size(); ++i) {
         const double measured_N = calibration.points.force_N(i);
-        const double predicted_N = calibration.chosen.predicted_N(i);
-        if (log_error && !(measured_N > 0.0 && predicted_N > 0.0)) continue;
-        off.push_back(std::abs(log_error ? std::log(measured_N / predicted_N) : measured_N - predicted_N));
+        const double predicted_N = calibration.chosen.predicted_N(i), fitted_N = calibration.fitted_N(i);
+        if (log_error && !(measured_N > 0.0 && predicted_N > 0.0 && fitted_N > 0.0)) continue;
+        off.push_back(distance(measured_N, predicted_N));
+        all.push_back({off.back(), distance(measured_N, fitted_N), calibration.points.level(i)});
     }
     const double scale = 1.4826 * files::median(off);
     const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // smaller residuals are no slips
     // 8 scales, since between sparse points a curve is off by 5 here and there without any slip
-    return static_cast<std::size_t>(
-        std::count_if(off.begin(), off.end(), [&](double v) { return v > 8.0 * scale && v > least; }));
+    Slips slips;
+    for (const Off& one : all) {
+        if (!(one.predicted > 8.0 * scale && one.predicted > least)) continue;
+        ++slips.count;
+        if (one.fitted < 2.0 / 3.0 * one.predicted) slips.followed_levels.push_back(one.level);
+    }
+    return slips;
 }
 
 std::vector<double> band_levels(LevelRange range) {

@@ -33,6 +33,14 @@ struct LevelsDelivered {
     double gap_from = platform::kMissing;
 };
 
+// Points whose prediction by a fit without them is off by more than 8 robust scales. Of two readings of one level that differ
+// both are, since nothing tells which of them is right.
+struct Slips {
+    std::size_t count = 0;
+    std::vector<double>
+        followed_levels;  // of those that the curve goes after by more than a third of that error; they rise
+};
+
 struct Calibration {
     Profile profile;
     Candidate chosen;          // with predictions of each point by a fit without its fold
@@ -50,7 +58,7 @@ struct Calibration {
     std::optional<Hysteresis> hysteresis;
     std::optional<Drift> drift;
     LevelsDelivered levels;
-    std::size_t slips = 0;              // points whose prediction is off by more than 8 robust scales
+    Slips slips;
     std::vector<std::string> warnings;  // in plain words: notes, ends of the range, errors, data
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "calibration/calibrate.h"
@@ -48,6 +49,27 @@ void about_ends(const Calibration& calibration, const Words& words, std::vector<
     }
 }
 
+// Two readings of a level that differ do not tell which of them is right, and three do.
+std::string about_slips(const Calibration& calibration, const Words& words) {
+    const std::vector<double>& followed = calibration.slips.followed_levels;
+    const std::string are = calibration.slips.count == 1 ? " points is" : " points are";
+    const FitOptions& fit = calibration.chosen.options;
+    if (followed.empty() || (fit.robust == Robust::none && fit.model != CurveModel::monotone_cubic))
+        return are + " far off the curve (slips?) and count " +
+               (fit.robust == Robust::none ? "in full, as robust weights are off" : "little");
+    constexpr std::size_t kMostNamed = 5;
+    std::vector<std::string> places;
+    for (const double level : followed) {
+        const std::string place = words.at(level);
+        if (places.empty() || places.back() != place) places.push_back(place);
+    }
+    std::string text;
+    for (std::size_t i = 0; i < std::min(places.size(), kMostNamed); ++i) text += (i > 0 ? ", " : "") + places[i];
+    return are + " far off what the others tell (slips?), and the curve follows them at " + text +
+           (places.size() > kMostNamed ? " and elsewhere " : " ") + words.level +
+           ": press these levels again, until each has three readings";
+}
+
 void about_errors(const Calibration& calibration, const Words& words, std::vector<std::string>& out) {
     for (const ErrorBand& band : calibration.bands) {
         if (!(band.median > 0.1)) continue;
@@ -63,11 +85,9 @@ void about_errors(const Calibration& calibration, const Words& words, std::vecto
         out.push_back("at one " + words.level + " pressing takes " + percent(calibration.hysteresis->median_relative) +
                       " more force than releasing: the curve lies between the two");
     }
-    if (calibration.slips > 0) {
-        out.push_back(
-            std::to_string(calibration.slips) + " of " + std::to_string(calibration.points.level.size()) +
-            " points are far off the curve (slips?) and count " +
-            (calibration.chosen.options.robust == Robust::none ? "in full, as robust weights are off" : "little"));
+    if (calibration.slips.count > 0) {
+        out.push_back(std::to_string(calibration.slips.count) + " of " +
+                      std::to_string(calibration.points.level.size()) + about_slips(calibration, words));
     }
 }
 

@@ -60,7 +60,8 @@ files::Json quality_json(const calibration::Calibration& calibration) {
     json["saturation_force_N"] = ends.saturation_N;
     json["n_points"] = calibration.n_points;
     json["n_fitted"] = calibration.points.level.size();
-    json["n_slips"] = calibration.slips;
+    json["n_slips"] = calibration.slips.count;
+    json["slips_followed_at_levels"] = calibration.slips.followed_levels;
     json["levels"] = {{"distinct", calibration.levels.distinct},
                       {"smallest_step", calibration.levels.smallest_step},
                       {"widest_gap", calibration.levels.widest_gap}};

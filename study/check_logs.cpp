@@ -1,6 +1,7 @@
 #include "study/check_logs.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -21,7 +22,9 @@ const Item* item_of(const Protocol& protocol, const Rating& answer) {
 bool offers(const Item& item, const std::string& answer) {
     if (answer == "n/a") return true;
     double value = 0.0;
-    if (item.from) return files::parse_number(answer, value) && value >= *item.from && value <= *item.to;
+    if (item.from)
+        return files::parse_number(answer, value) && value >= *item.from && value <= *item.to &&
+               value == std::trunc(value);
     const auto is_it = [&](const std::string& choice) { return answer_text(choice) == answer; };
     return item.choices.empty() || std::any_of(item.choices.begin(), item.choices.end(), is_it);
 }

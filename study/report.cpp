@@ -61,6 +61,23 @@ int people_with_tests(const Observations& seen) {
     return static_cast<int>(people.size());
 }
 
+// Why participants with logs are not in the tables. `seen`: of everybody.
+void count_people_without(const Observations& seen, Report& report) {
+    const auto has_logs = [&](const std::string& code) {
+        return std::find(seen.participants.begin(), seen.participants.end(), code) != seen.participants.end();
+    };
+    std::set<std::string> excluded, replaced;
+    for (const Exclusion& one : seen.exclusions)
+        if (!one.trial && has_logs(one.participant)) excluded.insert(one.participant);
+    for (const Replacement& one : seen.replacements)
+        if (has_logs(one.participant) && excluded.count(one.participant) == 0) replaced.insert(one.participant);
+    report.withdrawn_people = seen.withdrawn_people;
+    report.excluded_people = static_cast<int>(excluded.size());
+    report.replaced_people = static_cast<int>(replaced.size());
+    const int with_logs = static_cast<int>(seen.participants.size()) + seen.withdrawn_people;
+    report.people_without = with_logs - report.participants;
+}
+
 ConditionResult condition_result(const Observations& seen, int condition, const ReportOptions& options) {
     ConditionResult out;
     out.name = seen.conditions[at(condition)];
@@ -285,7 +302,7 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     report.options = options;
     report.notes = seen.notes;
     report.participants = people_with_tests(seen);
-    report.people_without = static_cast<int>(seen.participants.size()) - report.participants;
+    count_people_without(seen, report);
     report.trials = static_cast<std::int64_t>(seen.trials.size());
     report.forced_choices = seen.from_logs ? static_cast<std::int64_t>(seen.stiffer.size()) : 0;
     report.practice_trials = seen.practice_trials;

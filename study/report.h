@@ -92,7 +92,10 @@ struct Report {
     std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;
     int participants = 0;             // with a test in the tables
-    int people_without = 0;           // with logs but no test in the tables: replaced, left out, or broken off before
+    int people_without = 0;           // with logs but no test in the tables: those below, or broken off before
+    int withdrawn_people = 0;         // who withdrew their data
+    int excluded_people = 0;          // whom the experimenter left out
+    int replaced_people = 0;          // and who are not left out already
     std::int64_t trials = 0;          // finished tests in which nodules were to be found; 0 for a table of counts
     std::int64_t forced_choices = 0;  // finished tests in which two surfaces were compared; 0 for a table of counts
     std::int64_t practice_trials = 0;
@@ -107,6 +110,9 @@ struct Report {
     std::string group;           // empty: everybody
     std::vector<Report> groups;  // of two groups and more: the same of each, without comparisons of groups
 };
+
+// What Wilson's interval of a share is over.
+inline const char* wilson_is(const Share& share) { return share.one_each ? "over participants" : "ignores clustering"; }
 
 Report make_report(const Observations& seen, const ReportOptions& options);
 

@@ -18,7 +18,7 @@ void add_share(const std::optional<Share>& share, Row& row) {
     row.push_back(share ? share_text(share->x.p()) : kNone);
     add_interval(share ? share->bootstrap : std::nullopt, row);
     add_interval(share ? std::optional(share->wilson) : std::nullopt, row);
-    row.push_back(!share ? kNone : share->one_each ? "over participants" : "ignores clustering");
+    row.push_back(share ? wilson_is(*share) : kNone);
 }
 
 std::vector<std::string> share_columns(Row first) {
@@ -237,8 +237,8 @@ std::string report_markdown(const Report& report) {
         "k / "
         "sum n, with the standard error of the jackknife over participants in these t tests; p_permutation = exact "
         "permutation of signs, or of groups (drawn above " +
-        whole(kMostExactPeople) + " people). p_holm = corrected by Holm " + kHolmFamilies + ". " +
-        (report.groups.empty() ? "" : "Interactions of PPV are not tested. ") +
+        whole(kMostExactPeople) + " people who differ, or of both groups). p_holm = corrected by Holm " +
+        kHolmFamilies + ". " + (report.groups.empty() ? "" : "Interactions of PPV are not tested. ") +
         (report.primary ? "The primary comparison is not corrected. " : "No protocol states a primary comparison. ") +
         "Intervals at " + level +
         " (the staircases' table has its own): low, high = of the difference, by t; bootstrap = from " +

@@ -40,12 +40,23 @@ std::string index_tests(const Protocol* protocol) {
     return "palpation under " + out + ". Settings of every trial are in the logs";
 }
 
+std::string took_part(const Report& report) {
+    if (report.participants + report.people_without == 0) return kToFillIn + " took part";  // counts without names
+    return whole(report.participants + report.people_without) + " took part, " + whole(report.participants) +
+           " are analysed";
+}
+
 std::string stard_flow(const Report& report) {
-    std::string out = whole(report.participants) + " participants, " + whole(report.trials + report.forced_choices) +
-                      " finished tests; " + whole(report.interrupted_trials) + " interrupted, " +
+    const int broken_off =
+        report.people_without - report.withdrawn_people - report.excluded_people - report.replaced_people;
+    const std::int64_t analysed = report.trials + report.forced_choices;
+    std::string out = took_part(report) + " (" + whole(report.withdrawn_people) + " withdrew their data, " +
+                      whole(report.excluded_people) + " left out by the experimenter, " +
+                      whole(report.replaced_people) + " replaced, " + whole(broken_off) +
+                      " without a finished test); " + whole(analysed + report.excluded_trials) +
+                      " finished tests, of which " + whole(analysed) + " are analysed and " +
                       whole(report.excluded_trials) + " left out (" + whole(report.withdrawn_trials) +
-                      " of them withdrawn), " + whole(static_cast<std::int64_t>(report.replacements.size())) +
-                      " participants replaced";
+                      " of them withdrawn); " + whole(report.interrupted_trials) + " interrupted";
     return out +
            (report.progress.empty() ? "" : "; by condition in plan.tsv, by participant in plan_participants.tsv") +
            ". Who was asked and refused: " + kToFillIn;
@@ -69,7 +80,8 @@ std::string stard_precision(const Report& report) {
         if (!one.se) continue;
         const Interval ci = one.se->bootstrap.value_or(one.se->wilson);
         out += (out.empty() ? "" : "; ") + one.name + ": sensitivity " + share_text(one.se->x.p()) + " (" +
-               share_text(ci.low) + " to " + share_text(ci.high) + ")";
+               share_text(ci.low) + " to " + share_text(ci.high) + ", " +
+               (one.se->bootstrap ? "bootstrap over participants" : std::string("Wilson, ") + wilson_is(*one.se)) + ")";
     }
     return out.empty() ? ""
                        : out + ". Intervals at " + files::short_number(100.0 * report.options.bootstrap.level) +
@@ -77,10 +89,10 @@ std::string stard_precision(const Report& report) {
 }
 
 std::string stard_sample(const Report& report, const Protocol* protocol) {
-    std::string out = whole(report.participants) + " took part";
+    std::string out = took_part(report);
     if (protocol && protocol->planned_participants > 0)
         out += ", " + whole(protocol->planned_participants) + " were planned";
-    if (protocol && !protocol->stopping_rule.empty()) out += "; " + protocol->stopping_rule;
+    if (protocol && !protocol->stopping_rule.empty()) out += ". Rule for stopping: " + protocol->stopping_rule;
     return out + ". How the number was chosen (`palpa study power`): " + kToFillIn;
 }
 

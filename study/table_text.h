@@ -24,7 +24,13 @@ inline std::string fixed(double value, int digits) {
 }
 
 inline std::string share_text(double value) { return fixed(value, 4); }
-inline std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed(p, 4); }  // n/a for NaN
+// n/a for NaN; a number also where it is small, so that a program can read the column.
+inline std::string p_text(double p) {
+    if (!(p < 1e-4)) return fixed(p, 4);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1e", p);
+    return text;
+}
 inline std::string whole(std::int64_t value) { return std::to_string(value); }
 inline std::string number_of(std::int64_t n, const char* what) { return whole(n) + " " + what + (n == 1 ? "" : "s"); }
 

@@ -66,7 +66,9 @@ double lag_s(const MismatchMeter& meter) {
     const auto& sums = meter.by_lag_m2;
     const auto least = std::min_element(sums.begin(), sums.end());
     const auto most = std::max_element(sums.begin(), sums.end());
-    if (!(*most > *least)) return std::numeric_limits<double>::quiet_NaN();
+    constexpr double kLeast_m = 20e-6;  // in 25 comparisons, which are a tenth of a second
+    const auto pins = static_cast<double>(meter.wanted_m.size()) / static_cast<double>(kShapes);
+    if (!(*most - *least > 25.0 * pins * kLeast_m * kLeast_m)) return std::numeric_limits<double>::quiet_NaN();
     auto lag = static_cast<double>(least - sums.begin()) + MismatchMeter::kEarliest;
     if (least != sums.begin() && least + 1 != sums.end()) {  // the vertex of the parabola through three sums
         const double bend = least[-1] - 2.0 * least[0] + least[1];

@@ -30,7 +30,7 @@ void add(std::span<const double> wanted_m, std::span<const double> reached_m, bo
 
 double rms_m(const MismatchMeter& meter);  // over steps and pins; NaN without a press
 // How long the reached heights are behind the wanted ones: the shift in time that leaves the smallest difference, in s
-// (negative: ahead). NaN if nothing moved.
+// (negative: ahead). NaN as long as the pins have moved too little to tell.
 double lag_s(const MismatchMeter& meter);
 
 }  // namespace palpa::tactile

@@ -199,7 +199,30 @@ ForwardAnswer prepare_press(const DeviceModel& model, DeviceState& state, double
     };
     double low = tight.lower, high = tight.upper;
     double below = excess_N(low);
+    const DeviceState at_low = state;
     double above = below < 0.0 ? excess_N(high) : 0.0;
+    if (below < 0.0 && !(above > 0.0)) {
+        // More tension is not always stiffer, since a device may buckle on the way: the first tension that is stiff enough, or
+        // the one that is stiffest, is looked for step by step.
+        constexpr int kSteps = 16;
+        const double first = low, step = (high - low) / kSteps;
+        double stiffest_N = below;
+        int best = 0;
+        state = at_low;
+        for (int k = 1; k <= kSteps && !(above > 0.0); ++k) {
+            const double tension = first + step * k;
+            const double there_N = excess_N(tension);
+            if (there_N > stiffest_N) stiffest_N = there_N, best = k;
+            if (there_N < 0.0) low = tension, below = there_N;
+            if (there_N > 0.0) high = tension, above = there_N;
+        }
+        if (!(above > 0.0)) {
+            state = at_low;
+            for (int k = 1; k <= best; ++k) rest_at(first + step * k);
+            low = high = first + step * best;
+            above = 0.0;
+        }
+    }
     DeviceStatus status = below >= 0.0 || above <= 0.0 ? DeviceStatus::slow : DeviceStatus::good;
     if (below >= 0.0) high = low;
     if (below < 0.0 && above <= 0.0) low = high;

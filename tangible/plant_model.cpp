@@ -153,7 +153,8 @@ double moving_mass_kg(const DeviceModel& model, double density_kg_per_m3) {
 
 PlantOptions read_plant(const std::string& exact_or_file) {
     PlantOptions options;
-    if (exact_or_file == "exact") return options;
+    options.as_fitted = exact_or_file == "exact";
+    if (options.as_fitted) return options;
     const files::Json root = files::read_json(exact_or_file);
     files::JsonReader json(root, exact_or_file);
     json.only({"name", "device", "modulus_factor", "friction_share", "lag_ms", "inertia", "sensor", "hand"});
@@ -173,20 +174,30 @@ PlantOptions read_plant(const std::string& exact_or_file) {
     return options;
 }
 
+PlantOptions of_fit(PlantOptions options, const DeviceFit& fit) {
+    if (!options.as_fitted) return options;
+    options.as_fitted = false;
+    options.modulus_factor = fit.modulus_factor;
+    options.friction_share = fit.friction_share;
+    options.sensor.zero_m = fit.zero_m;
+    if (!(options.lag_s > 0.0)) options.lag_s = fit.lag_s;
+    return options;
+}
+
 Plant make_plant(const std::shared_ptr<const DeviceModel>& model, const PlantOptions& options,
                  const LoopOptions& loop) {
     Plant plant;
-    plant.options = options;
     plant.command = loop.command;
     plant.period_s = 1.0 / loop.rate_Hz;
     plant.model = model;
     const SoftDevice& of_loop = model->device;
-    if (!options.device.empty() || options.modulus_factor != of_loop.fit.modulus_factor) {
+    plant.options = of_fit(options, of_loop.fit);
+    if (!options.device.empty() || plant.options.modulus_factor != of_loop.fit.modulus_factor) {
         files::Json json = files::read_json(of_loop.file);
         json.merge_patch(options.device);
         SoftDevice device = parse_soft_device(json, of_loop.file, std::filesystem::path(of_loop.file).parent_path());
         device.fit = {};  // what was fitted says how the model is to follow the plant
-        device.fit.modulus_factor = options.modulus_factor;
+        device.fit.modulus_factor = plant.options.modulus_factor;
         plant.model = std::make_shared<const DeviceModel>(make_device_model(device));
     }
     if (options.inertia) {
@@ -200,7 +211,8 @@ Plant make_plant(const std::shared_ptr<const DeviceModel>& model, const PlantOpt
 
 PlantState make_plant_state(const Plant& plant, const TangiblePlan& loop, std::uint64_t seed) {
     PlantState state;
-    state.device = rest_state(*plant.model);
+    // the loop has found its own way to the pretension, also where the device buckles on it
+    state.device = plant.model == loop.model ? loop.start : rest_state(*plant.model);
     state.force = loop.start.actuation;
     state.length = lengths(*loop.model, loop.start.u_m);
     state.body_length = state.length;
@@ -233,7 +245,7 @@ TangibleFeedback read_plant_sensor(const Plant& plant, double time_s, PlantState
         if (sensor.noise_m > 0.0) state.reading_m += sensor.noise_m * normal(state.random);
     }
     TangibleFeedback out;
-    out.sensor_m = state.reading_m;
+    out.sensor_m = state.reading_m + sensor.zero_m;
     out.sensor_s = state.read_s + sensor.delay_s;  // the loop knows when it came
     out.has_sensor = 1.0;
     return out;

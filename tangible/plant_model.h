@@ -16,6 +16,7 @@ struct PlantSensor {
     double rate_Hz = 0.0;  // 0: read at every tick
     double noise_m = 0.0;  // standard deviation
     double delay_s = 0.0;  // from the moment of a reading until it arrives
+    double zero_m = 0.0;   // what it reads at the rest
 };
 
 // A hand: a mass with damping that a force pushes into the device.
@@ -24,19 +25,23 @@ struct PlantHand {
     double damping_N_s_per_m = 2.0;
 };
 
-// A plant file, or "exact": all as in the device's own model.
+// A plant file, or "exact": all as in the device's own model, with what was fitted to it.
 struct PlantOptions {
     std::string name = "exact";
+    bool as_fitted = false;                      // modulus, friction, zero and lag are those of the device's fit
     files::Json device = files::Json::object();  // merge patch (RFC 7386) of the device file: mesh, element, law
-    double modulus_factor = 1.0;
-    double friction_share = 0.0;  // of a cable's tension that its guide takes
-    double lag_s = 0.0;           // of the drives, first order
-    bool inertia = false;         // the effector's share of the body's mass resists acceleration
+    double modulus_factor = 1.0;                 // of the device file's moduli, without its fit
+    double friction_share = 0.0;                 // of a cable's tension that its guide takes
+    double lag_s = 0.0;                          // of the drives, first order
+    bool inertia = false;                        // the effector's share of the body's mass resists acceleration
     PlantSensor sensor;
     PlantHand hand;
 };
 // Throws InputError. "exact" is no file.
 PlantOptions read_plant(const std::string& exact_or_file);
+
+// The options with the values of the fit, where the plant is as fitted.
+PlantOptions of_fit(PlantOptions options, const DeviceFit& fit);
 
 // Prepared once; constant while it runs.
 struct Plant {

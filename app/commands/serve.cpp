@@ -10,6 +10,7 @@
 #include "app/commands/command_line.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
+#include "files/text.h"
 
 namespace palpa::app {
 namespace {
@@ -17,16 +18,26 @@ namespace {
 struct ServeArguments {
     desk::ServeOptions options;
     std::string web;
+    std::string assets;
     double hours = 12.0;
     double upload_MB = 64.0;
     double total_MB = 16384.0;
 };
 
+// `asked`: empty for the installed one.
+std::filesystem::path served_folder(const std::string& asked, const std::filesystem::path& installed) {
+    if (asked.empty()) return installed;
+    for (const char* kind : {"protocols", "scenes", "maps", "profiles", "phantoms"})
+        if (std::filesystem::is_directory(std::filesystem::path(asked) / kind)) return asked;
+    throw files::bad_input("--assets", "", files::shown(asked),
+                           "a folder with one of the folders protocols, scenes, maps, profiles, phantoms");
+}
+
 void start(const ServeArguments& arguments) {
     desk::ServeOptions options = arguments.options;
-    options.assets = assets_folder();
-    options.web =
-        arguments.web.empty() ? desk::web_folder_beside(options.assets) : std::filesystem::path(arguments.web);
+    const std::filesystem::path installed = assets_folder();
+    options.assets = served_folder(arguments.assets, installed);
+    options.web = arguments.web.empty() ? desk::web_folder_beside(installed) : std::filesystem::path(arguments.web);
     options.sessions.lasts_s = 3600.0 * arguments.hours;
     options.uploads.upload_bytes = static_cast<std::uint64_t>(1e6 * arguments.upload_MB);
     options.uploads.total_bytes = static_cast<std::uint64_t>(1e6 * arguments.total_MB);
@@ -62,6 +73,10 @@ void add_serve(CLI::App& app) {
                         "folder for the logs of tablets; without this option no logs are taken");
     command->add_option("--web", arguments->web,
                         "folder of the built web app (default: build/web/site or web beside the assets, if it exists)");
+    command->add_option(
+        "--assets", arguments->assets,
+        "folder whose protocols, scenes, maps, profiles and phantoms (folders of these names) are served; "
+        "default: those that came with Palpa");
     command->add_option("--session-h", arguments->hours, "how long a paired tablet stays paired, in hours")
         ->check(CLI::Range(0.0001, 8760.0))
         ->capture_default_str();

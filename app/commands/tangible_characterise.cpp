@@ -82,8 +82,8 @@ PressedTissues tissues_of(const TangibleCharacteriseArguments& arguments) {
     return out;
 }
 
-PlantOptions plant_of(const TangibleCharacteriseArguments& arguments) {
-    PlantOptions plant = tangible::read_plant(arguments.plant);
+PlantOptions plant_of(const TangibleCharacteriseArguments& arguments, const tangible::DeviceFit& fit) {
+    PlantOptions plant = tangible::of_fit(tangible::read_plant(arguments.plant), fit);
     if (plant.hand.mass_kg > 0.0)
         throw files::bad_input(arguments.plant, "hand", "a hand with mass", "none: here the finger follows a motion");
     plant.modulus_factor = arguments.modulus_factor.value_or(plant.modulus_factor);
@@ -133,10 +133,7 @@ files::Json contributions_json(const TangibleCharacteriseArguments& arguments,
     const tangible::DeviceFit& fit = model->device.fit;
     const auto alone = [&](bool differs, const auto& take) {
         if (!differs) return 0.0;
-        PlantOptions one = tangible::read_plant("exact");
-        one.modulus_factor = fit.modulus_factor;
-        one.friction_share = fit.friction_share;
-        one.lag_s = fit.lag_s;
+        PlantOptions one = tangible::of_fit(tangible::read_plant("exact"), fit);
         take(one);
         return press_on(arguments, model, tissue, one).figures.force_rms_percent;
     };
@@ -245,7 +242,7 @@ void characterise(const TangibleCharacteriseArguments& arguments) {
         make_device_model(tangible::read_soft_device(device_file(arguments.device))));
     check_depth("--depth-mm", "", 1e-3 * arguments.depth_mm, *model);
     if (!arguments.folder.empty()) fs::create_directories(arguments.folder);
-    const PlantOptions plant = plant_of(arguments);
+    const PlantOptions plant = plant_of(arguments, model->device.fit);
     const PressedTissues tissues = tissues_of(arguments);
     files::Json json{{"device", model->device.name},
                      {"plant", plant.name},

@@ -158,7 +158,10 @@ void run_solve(const TangibleSolveOptions& options) {
     else
         print_solve(model, options, json, solved);
     if (solved.answer.status == tangible::DeviceStatus::no_equilibrium || solved.given_up)
-        throw std::runtime_error(model.device.name + ": no equilibrium was found at this depth and force");
+        throw std::runtime_error(
+            model.device.name +
+            ": no answer was found at this depth and force: the device has no equilibrium there, or "
+            "cannot be made so stiff (`palpa tangible characterise` says how stiff)");
 }
 
 }  // namespace

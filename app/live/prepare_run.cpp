@@ -26,6 +26,14 @@ void take_chosen_profile(App& app, scene::Scene& scene) {
     profile.clear();
 }
 
+// A scene that is named on the command line keeps its profile, so that the run is the same for everybody.
+void tell_of_own_profile(const scene::Scene& scene, App& app) {
+    const std::filesystem::path chosen = app.settings.profile;
+    if (chosen.empty() || chosen == scene.profile || !std::filesystem::exists(chosen)) return;
+    app.notices.problems.push_back(
+        words::filled(words::kProfileOfScene, {scene.profile.stem().string(), chosen.stem().string()}));
+}
+
 // Whoever chose a scene that can no longer be prepared must get to the menu to choose another: the default one opens.
 std::shared_ptr<const scene::Plan> prepare_own_choice(scene::Scene& scene, App& app) {
     std::shared_ptr<const scene::Plan> plan;
@@ -68,6 +76,7 @@ void load(const RunOptions& options, App& app) {
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice) take_chosen_profile(app, scene);
+    if (!options.scene.empty() && !app.trace) tell_of_own_profile(scene, app);
     if (app.trace) {
         session::turn_as_recorded(app.trace->info, scene);
         const std::string other = session::other_parts(app.trace->info, scene);

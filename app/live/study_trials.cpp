@@ -246,6 +246,7 @@ files::Json close_study(const Gui& gui, App& app) {
         const std::string why = close_trial(app);
         if (!why.empty()) throw std::runtime_error(why);
     }
+    if (at<step::Consent>(run)) forget_unasked(run);
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) throw std::runtime_error(stopped->why);
     files::Json json = study_json(app);
     json["overflow"] = gui.overflow();

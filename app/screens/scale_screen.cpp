@@ -53,6 +53,8 @@ void draw_card(const PanelArea& area, float px_per_mm) {
     const ImVec2 low(0.5f * (area.x0 + area.x1 - width_px), 0.5f * (area.y0 + area.y1 - height_px));
     const ImVec2 high(low.x + width_px, low.y + height_px);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
+    // a scale that is much too large must not hide what changes it
+    draw.PushClipRect(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), true);
     draw.AddRectFilled(low, high, IM_COL32(62, 69, 75, 255), 3.18f * px_per_mm);
     draw.AddRect(low, high, kLag, 3.18f * px_per_mm, 0, 2.0f);
     draw_ruler(ImVec2(low.x, high.y), card, px_per_mm, draw);
@@ -63,6 +65,7 @@ void draw_card(const PanelArea& area, float px_per_mm) {
     draw.AddText(inside ? ImVec2(low.x + indent_px, low.y + indent_px)
                         : ImVec2(0.5f * (low.x + high.x - text_px.x), low.y - 1.5f * text_px.y),
                  kInk, text);
+    draw.PopClipRect();
 }
 
 // Lets the person drag the frame's left or right edge, or anything between, to the size of the card.
@@ -147,6 +150,8 @@ void draw_scale_screen(const Shown& shown, Gui& gui, ScaleForm& form, Wishes& wi
                                  ? fixed(shown.notices.px_per_mm, 3) + " " + words::kPxPerMm
                                  : words::kNotMeasured;
     paragraph(words::filled(words::kThisScreen, {shown.notices.screen_name, kept}));
+    if (kCardShort_mm * static_cast<float>(form.card_px_per_mm) > std::max(screen.x, screen.y))
+        warning_paragraph(words::kCardTooLarge);
     const float top_px = ImGui::GetCursorScreenPos().y;
     const PanelArea card{0.0f, top_px, screen.x, std::max(top_px + 1.0f, screen.y - 3.0f * gui.mm())};
     drag_card(card, form);

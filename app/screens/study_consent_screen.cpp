@@ -23,7 +23,7 @@ void draw_consent(const StudyRun& run, Gui& gui, Wishes& wishes) {
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     wrapped_text(run.protocol.consent);
-    ImGui::EndChild();
+    end_scrolled("text", gui);
     if (wide_button(words::kAgree, '1', gui)) wishes.study = GiveConsent{true};
     if (wide_button(words::kDoNotAgree, '2', gui)) wishes.study = GiveConsent{false};
 }

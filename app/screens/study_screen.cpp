@@ -89,19 +89,25 @@ void draw_again(const StudyRun& run, Gui& gui, Wishes& wishes) {
     if (same || other) wishes.study = SamePerson{same};
 }
 
+// Goes on in the line if there is room for width_px up to right_px, else in a new one.
+void same_line_within(float right_px, float width_px) {
+    ImGui::SameLine();
+    if (ImGui::GetCursorPosX() + width_px > right_px + 0.5f * ImGui::GetStyle().ItemSpacing.x) ImGui::NewLine();
+}
+
 void draw_choices(const std::vector<std::string>& choices, float least_px, const Gui& gui, std::string& answer) {
-    const float gap_px = ImGui::GetStyle().ItemSpacing.x;
-    const float right_px = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+    const float line_px = ImGui::GetContentRegionAvail().x;
+    const float right_px = ImGui::GetCursorPosX() + line_px;
     for (std::size_t i = 0; i < choices.size(); ++i) {
         const float margin_px = (least_px > 0.0f ? 2.0f : 6.0f) * gui.mm();
-        const float width_px = std::max(least_px, ImGui::CalcTextSize(choices[i].c_str()).x + margin_px);
-        if (i > 0) {
-            ImGui::SameLine();
-            if (ImGui::GetCursorPosX() + width_px > right_px + 0.5f * gap_px) ImGui::NewLine();
-        }
+        const std::string label = broken_at_spaces(choices[i], line_px - margin_px);
+        const ImVec2 text_px = ImGui::CalcTextSize(label.c_str());
+        const float width_px = std::max(least_px, text_px.x + margin_px);
+        const float height_mm = std::max(kTarget_mm, text_px.y / gui.mm() + 3.0f);
+        if (i > 0) same_line_within(right_px, width_px);
         ImGui::PushID(static_cast<int>(i));
         const bool chosen = answer == choices[i];
-        if (big_button(choices[i].c_str(), "", {width_px, kTarget_mm, true, chosen}, gui))
+        if (big_button(label.c_str(), "", {width_px, height_mm, true, chosen}, gui))
             // a tap or Space takes an answer back; Enter twice, as people press it, does not
             answer = chosen && !gui.enter_presses_it() ? "" : choices[i];
         ImGui::PopID();
@@ -205,7 +211,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
         ImGui::PopID();
         gap(gui);
     }
-    ImGui::EndChild();
+    end_scrolled("items", gui);
     const bool open = std::all_of(answers.begin(), answers.end(), [](const std::string& a) { return a.empty(); });
     const bool accident = open && is_double_enter(run, now_s);
     if (forward(words::kContinue, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
@@ -223,7 +229,7 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
         gap(gui);
         wrapped_text(words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}));
     }
-    ImGui::EndChild();
+    end_scrolled("text", gui);
     if (run.pen != PenVerdict::not_needed) {
         paragraph(run.pen == PenVerdict::ready     ? words::kPenReady
                   : run.pen == PenVerdict::untried ? words::kPenUntried
@@ -299,18 +305,20 @@ void stepper(const char* name, const Gui& gui, int& value) {
 
 void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
     ImGui::PushID(name.c_str());
+    const float right_px = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
     ImGui::BeginGroup();
     beside(name, gui);
     ImGui::EndGroup();
-    ImGui::SameLine(22.0f * gui.mm());
-    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == study::kMissed}, gui))
-        said = study::kMissed;
-    ImGui::SameLine();
-    if (big_button(words::kFound, "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
+    const float name_px = ImGui::GetItemRectSize().x + ImGui::GetStyle().ItemSpacing.x;
+    const float word_px = 24.0f * gui.mm(), digit_px = 10.0f * gui.mm();
+    ImGui::SameLine(std::max(22.0f * gui.mm(), name_px));
+    if (big_button(words::kMissed, "", {word_px, kTarget_mm, true, said == study::kMissed}, gui)) said = study::kMissed;
+    same_line_within(right_px, word_px);
+    if (big_button(words::kFound, "", {word_px, kTarget_mm, true, said == 0}, gui)) said = 0;
     constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
     for (int i = 1; i <= 5; ++i) {
-        ImGui::SameLine();
-        if (big_button(kDigits[i - 1], "", {10.0f * gui.mm(), kTarget_mm, true, said == i}, gui)) said = i;
+        same_line_within(right_px, digit_px);
+        if (big_button(kDigits[i - 1], "", {digit_px, kTarget_mm, true, said == i}, gui)) said = i;
     }
     ImGui::PopID();
 }
@@ -350,7 +358,7 @@ void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
         for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, form.typed.nodules[i]);
     }
     stepper(words::kFalsePositiveCount, gui, form.typed.false_marks);
-    ImGui::EndChild();
+    end_scrolled("answers", gui);
     const bool timed = form.typed.duration_s > 0.0 && form.clock_began_s == 0.0;
     if (forward(words::kSave, gui, timed)) wishes.study = SubmitTyped{form.typed};
 }

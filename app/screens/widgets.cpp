@@ -28,6 +28,11 @@ void end_panel(const char* name, Gui& gui) {
     ImGui::End();
 }
 
+void end_scrolled(const char* name, Gui& gui) {
+    if (ImGui::GetScrollMaxX() > 1.0f) gui.note_overflow(name);
+    ImGui::EndChild();
+}
+
 bool is_deactivated_by_enter() {
     return ImGui::IsItemDeactivated() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
                                           ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));

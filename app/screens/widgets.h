@@ -31,6 +31,8 @@ inline constexpr float kMark_mm = 12.0f;
 // be scrolled, and gui.note_overflow() is called.
 void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity = 1.0f);
 void end_panel(const char* name, Gui& gui);
+// Ends a child that scrolls down: what is cut off at its right side is noted as an overflow.
+void end_scrolled(const char* name, Gui& gui);
 
 struct ButtonLook {
     float width_px = 0.0f;  // 0: the rest of the line

@@ -75,6 +75,7 @@ inline constexpr const char* kLag = "Lag";
 inline constexpr const char* kDelay = "Delay";
 inline constexpr const char* kPhantom = "Phantom";
 inline constexpr const char* kBeyondKnownDepth = "beyond the known depth";
+inline constexpr const char* kCardTooLarge = "At this scale a bank card is larger than this window.";
 inline constexpr const char* kNotMeasuredHere = "not measured here";
 inline constexpr const char* kBeyondLinear = "beyond the linear range";
 inline constexpr const char* kNotSettled = "the contact did not settle";
@@ -278,6 +279,9 @@ inline constexpr const char* kKeyRedo = "Ctrl+Y";
 inline constexpr const char* kHintRedoEdit = "Makes the change again that was taken back last";
 inline constexpr const char* kProfileGone =
     "{}: the profile that was chosen is gone. Until another one is chosen, each scene has its own.";
+inline constexpr const char* kProfileOfScene =
+    "Named on the command line, this scene keeps its own calibration profile, {}. Yours, {}, can be chosen in the "
+    "menu.";
 inline constexpr const char* kNoSuchMaterial = "This design has no material {}.";
 inline constexpr const char* kNothingChanged =
     "Nothing was changed: no part is there, it would fall in two, or it is so already.";
@@ -663,6 +667,7 @@ inline constexpr const char* pageSendNow = "Send now";
 inline constexpr const char* pageExport = "Export to a file";
 inline constexpr const char* pageRemove = "Delete exported trials";
 inline constexpr const char* pageClose = "Close";
+inline constexpr const char* pageDrivesDevices = "On the desk's machine only, since they drive devices: {}.";
 inline constexpr const char* pageStudies = "Start a study";
 inline constexpr const char* pageStudyCode = "Participant code: letters and digits (if empty, the study asks for it)";
 inline constexpr const char* pageStart = "Start";
@@ -722,11 +727,11 @@ inline constexpr const char* pageMayDelete =
 inline constexpr const char* pageExportIt = "NOT stored: export it";
 inline constexpr const char* pageStoredUnsent = "{} trial(s) stored on this tablet, not yet at the desk.";
 inline constexpr const char* pageStored = "{} trial(s) stored on this tablet.";
-inline constexpr const char* pageTheyAreHere = "They are on this tablet.";
-inline constexpr const char* pageTheyAreAtDesk = "They are at the desk.";
+inline constexpr const char* pageTheyAreHere = "The trials are on this tablet.";
+inline constexpr const char* pageTheyAreAtDesk = "The trials are at the desk.";
 inline constexpr const char* pageSomeAreHere =
     "Some are on this tablet, the others at the desk or in an exported file.";
-inline constexpr const char* pageNoneIsHere = "They are at the desk or in an exported file.";
+inline constexpr const char* pageNoneIsHere = "The trials are at the desk or in an exported file.";
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
 inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";
 inline constexpr const char* pageSettingsNotStored = "Settings are not stored: the storage of this browser is full.";

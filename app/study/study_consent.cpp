@@ -14,13 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Removes what tells the experimenter about a person who did not agree. Nothing else of this person is on the disk.
-void forget(const fs::path& subject) {
-    std::error_code none;
-    fs::remove(subject / "now.json", none);
-    fs::remove(subject, none);  // stays if it holds anything
-}
-
 // The number that a code of at most nine digits is, else 0.
 std::size_t number_of(const std::string& code) {
     std::size_t number = 0;
@@ -46,10 +39,17 @@ std::string free_code(const StudyRun& run) {
     }
 }
 
+void forget_unasked(const StudyRun& run) {
+    const fs::path subject = run.directory / ("sub-" + run.code);
+    std::error_code none;
+    fs::remove(subject / "now.json", none);
+    fs::remove(subject, none);  // stays if it holds anything
+}
+
 void answer_consent(bool given, StudyRun& run) {
     run.consented = given;
     if (given) return go_on(run);
-    forget(run.directory / ("sub-" + run.code));
+    forget_unasked(run);
     same_person(false, run);
     run.note = "Without agreement nobody takes part, and nothing was kept.";
 }

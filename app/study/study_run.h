@@ -88,6 +88,8 @@ void stop_study(const std::string& why, StudyRun& run);
 
 // study_consent.cpp: who takes part, and who stops.
 void answer_consent(bool given, StudyRun& run);
+// Removes what tells the experimenter where a person is who has not agreed. Nothing else of this person is on the disk.
+void forget_unasked(const StudyRun& run);
 void want_to_leave(StudyRun& run);
 void leave_study(study::Withdrawal how, StudyRun& run);
 // True, and the participant has stopped, if the experimenter noted a withdrawal or a replacement meanwhile (palpa study

@@ -104,9 +104,14 @@ const palpaStudies = (() => {
     // What can be chosen: {name, title, from}, by name.
     const list = async () => {
         const out = new Map();
+        const elsewhere = new Map();
         const add = (name, text, from) => {
             const protocol = parse(text);
-            if (!needsDevices(protocol)) out.set(name, {name, title: protocol?.name ?? name, from});
+            const title = protocol?.name ?? name;
+            out.delete(name);
+            elsewhere.delete(name);
+            if (needsDevices(protocol)) elsewhere.set(name, title);
+            else out.set(name, {name, title, from});
         };
         for (const file of FS.readdir(`${kAssets}/protocols`)) {
             if (file.endsWith('.json')) add(file.slice(0, -5), FS.readFile(`${kAssets}/protocols/${file}`, {encoding: 'utf8'}), palpaWords.inTheApp);
@@ -120,6 +125,7 @@ const palpaStudies = (() => {
         } catch (away) {
             said = palpaWords.noDesk;
         }
+        if (elsewhere.size > 0) said = [said, palpaFilled(palpaWords.drivesDevices, [...elsewhere.values()].sort().join(', '))].filter(Boolean).join(' ');
         return {studies: [...out.values()].sort((a, b) => a.title < b.title ? -1 : 1), said};
     };
 

@@ -259,6 +259,25 @@ TEST_CASE("calibrate: points far off the curve are told, and whether they pull i
     CHECK(any_with(warnings, "count in full"));
 }
 
+TEST_CASE("calibrate: of two readings that differ the curve takes the middle, which is told with its place") {
+    const auto warnings_with = [](int presses) {
+        CalibrationRows rows;
+        for (int press = 0; press < presses; ++press) {
+            for (int i = 1; i <= 14; ++i) {
+                const double force_N = 0.05 + 2.95 * std::pow(i / 14.0, 1.5);
+                const double noise = 1.0 + 0.004 * ((7 * i + 5 * press) % 5 - 2);
+                add_row(i / 14.0, force_N * noise * (i == 7 && press == 0 ? 1.5 : 1.0), press, rows);
+            }
+        }
+        return calibrate(rows, {}).warnings;
+    };
+    CHECK(any_with(warnings_with(2), "and the curve follows them at "));
+    CHECK(any_with(warnings_with(2), "50 %"));
+    CHECK(any_with(warnings_with(2), "press these levels again, until each has three readings"));
+    CHECK_FALSE(any_with(warnings_with(2), "count little"));
+    CHECK(any_with(warnings_with(4), "count little"));
+}
+
 TEST_CASE("calibrate: a stated level that the points cannot be of is refused") {
     CalibrationRows counts, shares;
     counts.file = shares.file = "p.csv";

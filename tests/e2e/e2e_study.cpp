@@ -361,6 +361,10 @@ TEST_CASE("consent: a person agrees by a key of its own, practises a pair, and g
                           R"(/assets/scenes/default.json"}]})");
     const std::filesystem::path now = folder / "log/sub-01/now.json";
     const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
+    const std::string study = "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string();
+    // who leaves at the consent page leaves nothing
+    REQUIRE(run_program(folder, study + " --participant 01", now, [&] { end_program(folder, "TERM"); }) == 0);
+    CHECK_FALSE(std::filesystem::exists(folder / "log/sub-01"));
     Script script(folder / "script.tsv");
     script.wait(now, R"("step": "consent")");
     script.key(kEnter);  // does not agree for anybody
@@ -382,8 +386,7 @@ TEST_CASE("consent: a person agrees by a key of its own, practises a pair, and g
     }
     script.close();
     REQUIRE(run_study_to("done", folder,
-                         "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
-                             " --participant 01 --json --screenshot " + (folder / "p.png").string()) == 0);
+                         study + " --participant 01 --json --screenshot " + (folder / "p.png").string()) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["finished"] == 3);
     CHECK(result["step"] == "done");

@@ -50,6 +50,7 @@ TEST_CASE("check logs: answers that the protocol does not offer are left out and
     const TemporaryFolder folder;
     const Protocol protocol = with_questions(folder);
     for (const Rating& odd : std::vector<Rating>{{"a", "effort", "8"},
+                                                 {"a", "effort", "3.5"},
                                                  {"a", "effort", "much"},
                                                  {"a", "like", "perhaps"},
                                                  {"a", "hobby", "chess"},

@@ -8,6 +8,7 @@
 #include "files/text.h"
 #include "study/read_logs.h"
 #include "study/report.h"
+#include "study/stard.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
 #include "study/withdrawal.h"
@@ -361,6 +362,11 @@ TEST_CASE("read logs: tests of a participant who withdrew the data are told apar
     const std::string text = report_markdown(report);
     CHECK(contains(text, "2 finished tests are left out because their participants withdrew the data"));
     CHECK_FALSE(contains(text, "by the experimenter's decision"));
+    CHECK(contains(text, "1 more participant has logs, but no test in the tables"));
+    const std::string others = std::to_string(report.participants), all = std::to_string(report.participants + 1);
+    const std::string form = stard_checklist(report, nullptr);
+    CHECK(contains(form, all + " took part, " + others + " are analysed (1 withdrew their data, 0 left out"));
+    CHECK(contains(form, "and 2 left out (2 of them withdrawn)"));
 }
 
 TEST_CASE("read logs: the report counts finished tests of all tasks") {

@@ -151,7 +151,7 @@ TEST_CASE("report: two people with one right answer each give no number without 
     CHECK(choice["t_over_answers"]["p"].is_null());
     CHECK(choice["share_bootstrap_ci"].is_null());
     CHECK(choice["share_ci_label"] == "over participants");
-    CHECK_FALSE(contains(report_markdown(make_report(seen, {})), "<0.0001"));
+    CHECK_FALSE(contains(report_markdown(make_report(seen, {})), "e-"));  // no p value that is next to nothing
     CHECK(contains(report_markdown(make_report(seen, {})), "WARNING: fewer than 10 people: with (2)"));
 }
 

@@ -18,6 +18,7 @@ TEST_CASE("STARD checklist: all 30 items and those of simulations stand there, f
     }
     CHECK(contains(form, "Touchpad: 31 nodules found, 29 missed"));
     CHECK(contains(form, "Touchpad: sensitivity 0.5167"));
+    CHECK(contains(form, "Wilson, ignores clustering)"));
     CHECK(contains(form, "| 13a | what those who did the index test knew of the reference | TO BE FILLED IN |"));
 }
 
@@ -25,9 +26,15 @@ TEST_CASE("STARD checklist: the protocol answers what it states, and simulated p
     const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/effects.json");
     Report report;
     report.simulated = true;
+    report.participants = 11;
+    report.people_without = 4;
+    report.withdrawn_people = report.excluded_people = report.replaced_people = 1;
     const std::string form = stard_checklist(report, &protocol);
     CHECK(contains(form, "the number of nodules was not told"));
     CHECK(contains(form, "display ratio: pen, scene display-ratio.json; delay: pen"));  // no device is stated
+    CHECK(contains(form,
+                   "15 took part, 11 are analysed (1 withdrew their data, 1 left out by the experimenter, 1 replaced, "
+                   "1 without a finished test)"));
     CHECK(contains(form, "NO PERSON TOOK PART"));
     CHECK(contains(form, "tests of at most 60 s"));
 }

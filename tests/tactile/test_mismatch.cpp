@@ -48,6 +48,11 @@ TEST_CASE("mismatch: without a press or without pins there is none") {
     for (int k = 0; k < 1000; ++k) add(still, still, false, meter);
     CHECK(std::isnan(rms_m(meter)));
     CHECK(std::isnan(lag_s(meter)));
+    for (int k = 0; k < 1000; ++k) {  // it trembles by a micrometre
+        const std::vector<double> trembling(4, 1e-3 + (k / 20 % 2 == 0 ? 1e-6 : 0.0));
+        add(trembling, still, false, meter);
+    }
+    CHECK(std::isnan(lag_s(meter)));
     add({}, {}, true, meter);
     CHECK(meter.steps == 0);
 }

@@ -85,6 +85,19 @@ TEST_CASE("plant: the sensor reads at its own times, late by its delay, with noi
     CHECK(std::abs(first(3) - 1e-3) < 6e-5);
 }
 
+TEST_CASE("plant: exact has what was fitted to the device; a plant of one's own has not") {
+    const KnownTissue known(0.1);
+    const auto rms_percent = [&](const PlantOptions& plant) {
+        const auto model = small_strip(0.85, 0.0, 0.02);
+        const TangiblePlan plan = make_tangible_plan(model, known.world, {0.0, 0.0}, {});
+        const PressFigures figures = run_press(plan, make_plant(model, plant, plan.loop), {4e-3, 8e-3}, 1);
+        CHECK(figures.saturated_share < 0.05);
+        return figures.force_rms_percent;
+    };
+    CHECK(rms_percent(read_plant("exact")) < 0.5);
+    CHECK(rms_percent(small_plant()) > 0.8);
+}
+
 TEST_CASE("plant: a hand comes to rest where its force is the wanted one, with mass and without") {
     const KnownTissue known(0.1);
     const auto model = small_strip();

@@ -128,7 +128,7 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     await key(page, 'Enter');
     await at(page, 'done');
     const where_now = () => page.evaluate(() => palpaTrials.where('P7'));
-    assert.equal(await where_now(), 'They are on this tablet.');
+    assert.equal(await where_now(), 'The trials are on this tablet.');
     const kept = await stored(page);
     const seen = marksOf(kept);
     assert.deepEqual(Object.keys(seen).length, 4);
@@ -144,7 +144,7 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     await page.unroute('**/api/logs/**');
     await page.evaluate(() => palpaTrials.send());
     await until('all at the desk', async () => (await stored(page)).every((trial) => trial.sent && trial.text === ''));
-    assert.equal(await where_now(), 'They are at the desk.');
+    assert.equal(await where_now(), 'The trials are at the desk.');
     const study = path.join(where.folder, 'study');
     const imported = palpaJson('study', 'import', ...uploads(where), '-o', study);
     assert.equal(imported.people_added, 1);

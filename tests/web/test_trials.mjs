@@ -125,7 +125,7 @@ test('exported trials are deleted, those at the desk keep their names and count;
     await page.click('#remove');
     await until('deleted', async () => (await stored(page)).filter((t) => t.finished).length === 1);
     assert.match((await page.evaluate(() => palpaTrials.state().lines)).join(' '), /^0 waiting, 1 at the desk\./);
-    assert.equal(await where(), 'They are at the desk or in an exported file.');
+    assert.equal(await where(), 'The trials are at the desk or in an exported file.');
 }));
 
 test('a full storage is said at once, the next trial waits, export saves it and lets it begin', () => withPage({}, async (browser) => {

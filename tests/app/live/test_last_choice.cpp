@@ -66,6 +66,22 @@ TEST_CASE("last choice: a profile that is gone or cannot be read is told of, and
     }
 }
 
+TEST_CASE("last choice: a scene named on the command line keeps its profile, and says so if another one was chosen") {
+    const Person person;
+    const fs::path own = person.folder / "mine.json";
+    fs::copy_file(kShippedProfile, own);
+    RunOptions named;
+    named.scene = "delay";
+    for (const bool chose_own : {true, false}) {
+        person.chose("", chose_own ? own : fs::path());
+        App app;
+        load(named, app);
+        CHECK(app.session.scene.profile.filename() == "s-pen.json");
+        REQUIRE(app.notices.problems.size() == (chose_own ? 1u : 0u));
+        if (chose_own) CHECK(contains(app.notices.problems[0], "profile, s-pen. Yours, mine, can be chosen"));
+    }
+}
+
 TEST_CASE("last choice: a scene whose map is gone is told of, and the default scene opens") {
     const Person person;
     const fs::path scene = person.folder / "mine.json";

@@ -225,6 +225,7 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     static_assert(std::size(steps) == std::variant_size_v<StudyStep>);
     const Case cases[] = {{1280, 800, kMissing, false},
                           {800, 1280, kMissing, false},
+                          {412, 915, kMissing, false},
                           {2560, 1600, 11.8, false},
                           {1024, 600, kMissing, true}};
     for (const Case& c : cases) {
