@@ -63,7 +63,7 @@ Slips slips_in(const Calibration& calibration) {
     const bool log_error = calibration.chosen.error == ErrorModel::log;
     const auto distance = [&](double a_N, double b_N) { return std::abs(log_error ? std::log(a_N / b_N) : a_N - b_N); };
     struct Off {
-        double predicted, fitted, level;
+        double predicted, followed, level;
     };
     std::vector<Off> all;
     std::vector<double> off;
@@ -72,7 +72,7 @@ Slips slips_in(const Calibration& calibration) {
         const double predicted_N = calibration.chosen.predicted_N(i), fitted_N = calibration.fitted_N(i);
         if (log_error && !(measured_N > 0.0 && predicted_N > 0.0 && fitted_N > 0.0)) continue;
         off.push_back(distance(measured_N, predicted_N));
-        all.push_back({off.back(), distance(measured_N, fitted_N), calibration.points.level(i)});
+        all.push_back({off.back(), distance(fitted_N, predicted_N), calibration.points.level(i)});
     }
     const double scale = 1.4826 * files::median(off);
     const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // smaller residuals are no slips
@@ -81,7 +81,7 @@ Slips slips_in(const Calibration& calibration) {
     for (const Off& one : all) {
         if (!(one.predicted > 8.0 * scale && one.predicted > least)) continue;
         ++slips.count;
-        if (one.fitted < 2.0 / 3.0 * one.predicted) slips.followed_levels.push_back(one.level);
+        if (one.followed > least) slips.followed_levels.push_back(one.level);
     }
     return slips;
 }
@@ -125,6 +125,7 @@ void check_level(LevelField level, const LevelRange& range, const std::string& f
 Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& options) {
     Calibration out;
     out.n_points = measured.level.size();
+    if (out.n_points == 0) throw files::bad_input(measured.file, "", "no point", "points of a pen and a force sensor");
     const LevelRange range = options.range.value_or(level_range_of(measured.level));
     CalibrationRows rows = measured;
     if (options.remove_lag && !rows.time_s.empty()) {
@@ -161,7 +162,7 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
                                   options.bootstrap_fits, options.seed);
     }
     out.hysteresis = hysteresis_of(rows, range);
-    out.drift = drift_of(out.points, profile.curve);
+    out.drift = drift_of(out.points, out.by_repeats ? out.chosen.predicted_N : out.fitted_N, out.by_repeats);
     out.levels = levels_of(out.points, range);
     out.slips = slips_in(out);
     out.warnings = warnings_of(out, rows.notes);

@@ -37,8 +37,7 @@ struct LevelsDelivered {
 // both are, since nothing tells which of them is right.
 struct Slips {
     std::size_t count = 0;
-    std::vector<double>
-        followed_levels;  // of those that the curve goes after by more than a third of that error; they rise
+    std::vector<double> followed_levels;  // where the curve goes after them by 5 %, or 1 % of the greatest force
 };
 
 struct Calibration {

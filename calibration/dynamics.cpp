@@ -255,17 +255,18 @@ std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange 
     return out;
 }
 
-std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve) {
+std::optional<Drift> drift_of(const FitPoints& points, const Eigen::ArrayXd& expected_N, bool by_others) {
     std::map<int, std::vector<double>> offsets;
     for (std::size_t i = 0; i < points.repeat.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        const double expected_N = value_N(curve, points.level(k));
-        if (expected_N > 0.0) offsets[points.repeat[i]].push_back(points.force_N(k) / expected_N - 1.0);
+        if (expected_N(k) > 0.0) offsets[points.repeat[i]].push_back(points.force_N(k) / expected_N(k) - 1.0);
     }
     if (offsets.size() < 2) return std::nullopt;
     Drift drift;
-    for (auto& [repeat, values] : offsets) drift.repeat_offset.push_back(files::median(values));
-    const auto n = static_cast<double>(drift.repeat_offset.size());
+    const auto n = static_cast<double>(offsets.size());
+    // the mean of the others is as far on the other side, divided by their number
+    const double share = by_others ? (n - 1.0) / n : 1.0;
+    for (auto& [repeat, values] : offsets) drift.repeat_offset.push_back(share * files::median(values));
     double sum = 0.0;
     for (std::size_t i = 0; i < drift.repeat_offset.size(); ++i)
         sum += (static_cast<double>(i) - 0.5 * (n - 1.0)) * drift.repeat_offset[i];

@@ -34,11 +34,12 @@ struct Hysteresis {
 std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange range);
 
 struct Drift {
-    std::vector<double> repeat_offset;  // of each repeat: median of F measured / F curve - 1
+    std::vector<double> repeat_offset;  // of each repeat, from the mean of all: median of F measured / F expected - 1
     double per_repeat = 0.0;            // slope of these over the repeats
     double spread = 0.0;                // greatest minus least
 };
-// Returns nothing with fewer than two repeats.
-std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve);
+// expected_N: at each point, by a fit to the other repeats (by_others), or else by the curve, which hides what lies on it: a
+// knot for each level does. Returns nothing with fewer than two repeats.
+std::optional<Drift> drift_of(const FitPoints& points, const Eigen::ArrayXd& expected_N, bool by_others);
 
 }  // namespace palpa::calibration

@@ -125,9 +125,10 @@ void fill_moment(const TickRecord& record, const TangibleSink& sink, double rate
     out.converged = tick.converged;
     out.actuation = tick.actuation;
     out.command = tick.length;
-    out.fault = tangible::text_of(tick.fault);
-    out.held = tick.held;
     out.stopped = tick.fault == tangible::TickFault::stopped;
+    const bool by_guard = out.stopped && record.guard != devices::Fault::none;
+    out.fault = by_guard ? devices::text(record.guard).data() : tangible::text_of(tick.fault);
+    out.held = tick.held;
     out.period_p50_s = 1e-9 * sink.period.quantile_ns(0.5);
     out.period_p99_s = 1e-9 * sink.period.quantile_ns(0.99);
     out.step_p50_s = 1e-9 * sink.tick.quantile_ns(0.5);

@@ -218,6 +218,11 @@ std::vector<TactileDevice> devices_of(const TangiblePlan& plan, bool simulated) 
     if (!device.wires) return out;
     for (const devices::RigPort& port : device.wires->ports)
         out.push_back({port.name, device.name, simulated ? "" : port.path, simulated});
+    for (const devices::RigSensor& sensor : device.wires->sensor) {
+        const devices::CountsPlace& at = sensor.place;
+        const std::string port = at.host.empty() ? at.path : "udp:" + at.host + ":" + std::to_string(at.port);
+        out.push_back({"sensor", device.name, simulated ? "" : port, simulated});
+    }
     return out;
 }
 

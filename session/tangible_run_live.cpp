@@ -133,6 +133,7 @@ class TangibleThread {
             rig_->send(record_.command);
         }
         record_.sensor_m = feedback.sensor_m;
+        if (rig_) record_.guard = rig_->report().fault;
         record_.missed = loop_->report.missed_periods;
         record_.period_ns = last_ns_ > 0 ? static_cast<double>(before_ns - last_ns_) : 0.0;
         last_ns_ = before_ns;

@@ -15,6 +15,7 @@ struct TickRecord {
     double period_ns = 0.0;  // since the tick before; 0: not measured
     double tick_ns = 0.0;    // how long it took; 0: not measured
     std::int64_t missed = 0;
+    devices::Fault guard = devices::Fault::none;  // of a real device: why the guard relaxes it
 };
 
 class TangibleSink {

@@ -216,8 +216,9 @@ void note_uneven_marks(Report& report) {
         if (fewest == nullptr || marks(one) < marks(*fewest)) fewest = &one;
     }
     if (most == nullptr || marks(*most) <= kUneven * marks(*fewest)) return;
-    report.notes.push_back("WARNING: " + most->name + " has " + std::to_string(marks(*most)) + " marks, " +
-                           fewest->name + " " + std::to_string(marks(*fewest)) +
+    report.notes.push_back("WARNING: " + most->name + " has " + std::to_string(marks(*most)) +
+                           " marks (hits and false ones, each nodule once), " + fewest->name + " " +
+                           std::to_string(marks(*fewest)) +
                            ". With so uneven numbers the t test of PPV does not keep its level; its permutation does");
 }
 

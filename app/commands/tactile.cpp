@@ -206,7 +206,8 @@ void add_tactile_run(CLI::App& tactile) {
         ->check(one_of({"free", "lead", "locked"}));
     command->add_option("--log", options->log, "folder for the log (existing files are never overwritten)");
     command->add_option("--seed", options->seed, "of the simulators (default 1)");
-    command->add_option("--arm-port", options->arm, "HOST:PORT of the arm, instead of its device file's");
+    command->add_option("--arm-port", options->arm,
+                        "HOST:PORT of the arm, instead of its device file's; its force sensor stays that of the file");
     command->add_option("--pins-port", options->pins, "serial port of the pins, instead of their device file's");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { run_tactile(*options); });

@@ -31,10 +31,10 @@ void note_pressure(platform::Tool tool, App& app) {
     const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
     const bool held = tool == platform::Tool::pen ? app.hold.pen : app.hold.finger;
     const std::string name(name_of(tool));
-    if (held) app.notices.device_notes.push_back(words::filled(words::kHeldPress, {name}));
+    if (held) app.notices.pressure_notes.push_back(words::filled(words::kHeldPress, {name}));
     if (held || (kind != platform::PressureKind::constant && kind != platform::PressureKind::missing)) return;
     const char* found = kind == platform::PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
-    app.notices.device_notes.push_back(words::filled(found, {name}));
+    app.notices.pressure_notes.push_back(words::filled(found, {name}));
     // a profile of counts or contact areas reads fields that pressing by time does not set
     app.notices.offer_hold = app.session.plan->profile.level == calibration::LevelField::pressure;
 }
@@ -44,6 +44,7 @@ void note_pressure(platform::Tool tool, App& app) {
 void note_devices(const platform::Window& window, App& app) {
     std::vector<std::string>& notes = app.notices.device_notes;
     notes.clear();
+    app.notices.pressure_notes.clear();
     if (app.trace) {
         notes.push_back(words::filled(words::kReplayOf, {app.options.trace}));
         return;

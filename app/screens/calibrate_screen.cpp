@@ -143,7 +143,7 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
 void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide) {
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
-    // Enter takes it, the same number again too: while the pen is held down, the display gives a click of the mouse to nobody,
+    // Enter takes it, and the field is empty for the next one: a second Enter records nothing. While the pen is held down, the display gives a click of the mouse to nobody,
     // so that the field takes the keys then, and a button would be of no use
     const bool presses = recording.session.touching;
     if (presses && !guide.pressed && guide.note == words::kRecorded) guide.note.clear();  // of the press before
@@ -162,10 +162,11 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     guide.typing = ImGui::IsItemActive();
     if (!is_deactivated_by_enter()) return;
     guide.again = true;  // the next number is typed at once
+    if (!std::isfinite(guide.shown_gf) && guide.note == words::kRecorded) return;
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
-    guide.note = !good                                                                           ? words::kNotAForce
-                 : calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording) ? words::kRecorded
-                                                                                                 : words::kNotRecorded;
+    const bool recorded = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording);
+    guide.note = !good ? words::kNotAForce : recorded ? words::kRecorded : words::kNotRecorded;
+    if (recorded) guide.shown_gf = platform::kMissing;
 }
 
 void form_lines(Gui& gui, CalibrateForm& form) {

@@ -155,6 +155,7 @@ void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui
     draw_verdict(verdict_of(*checking.check, shown.notices.devices), gui);
     ImGui::BeginChild("list");  // this part may scroll, since there may be any number of devices
     said_lines(shown.notices.devices);
+    for (const std::string& note : shown.notices.pressure_notes) warning_paragraph(note);
     for (const std::string& note : shown.notices.device_notes) warning_paragraph(note);
     for (const platform::Tool tool :
          {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard})

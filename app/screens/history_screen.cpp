@@ -49,7 +49,9 @@ void trial_list(const Gui& gui, HistoryView& history) {
 }
 
 void ask_to_delete(const Gui& gui, HistoryView& history, Wishes& wishes) {
-    warning_paragraph(words::filled(words::kDeleteAsk, {std::to_string(history.trials.size())}));
+    const std::string read = std::to_string(history.trials.size()), unread = std::to_string(history.problems.size());
+    warning_paragraph(history.problems.empty() ? words::filled(words::kDeleteAsk, {read})
+                                               : words::filled(words::kDeleteAskUnread, {read, unread}));
     const float width_px = share_of_line_px(2);
     if (big_button(words::kCancel, words::kEscape, {width_px, kTarget_mm, true, false}, gui)) history.asks = false;
     ImGui::SameLine();

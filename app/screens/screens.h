@@ -68,17 +68,18 @@ struct Wishes {
 struct Notices {
     std::vector<Choice> scenes;
     std::vector<Choice> profiles;
-    std::vector<std::string> device_notes;  // about pens, fingers, pressure
-    std::vector<std::string> problems;      // the newest last, until they are dismissed
-    std::string note;                       // good news ("saved ..."), shown for a while
-    std::string note_seen;                  // the note that is shown,
-    double note_since_s = 0.0;              // and since when
-    bool trial_stopped = false;             // its files can no longer be written: nothing is marked or finished
-    bool offer_hold = false;                // offer to press by time to a pen or finger without pressure
-    std::string screen_name;                // key of Settings::px_per_mm
-    double px_per_mm = platform::kMissing;  // of this screen; NaN: not measured
-    std::string trials_note;                // what the keeper holds, and what the desk has
-    bool keeps_trials = false;              // in the browser: a screen of its own for trials, and no way to quit
+    std::vector<std::string> device_notes;    // about pens and fingers, to be read before the first press
+    std::vector<std::string> pressure_notes;  // of a pen or finger without a sensor, which only its press shows
+    std::vector<std::string> problems;        // the newest last, until they are dismissed
+    std::string note;                         // good news ("saved ..."), shown for a while
+    std::string note_seen;                    // the note that is shown,
+    double note_since_s = 0.0;                // and since when
+    bool trial_stopped = false;               // its files can no longer be written: nothing is marked or finished
+    bool offer_hold = false;                  // offer to press by time to a pen or finger without pressure
+    std::string screen_name;                  // key of Settings::px_per_mm
+    double px_per_mm = platform::kMissing;    // of this screen; NaN: not measured
+    std::string trials_note;                  // what the keeper holds, and what the desk has
+    bool keeps_trials = false;                // in the browser: a screen of its own for trials, and no way to quit
     std::vector<platform::PointerDevice> devices;
     // `devices` is complete. False in a browser, where other devices may come with their first sample.
     bool devices_listed = false;

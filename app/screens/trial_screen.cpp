@@ -156,6 +156,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
     if (notices.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
     if (!notices.note.empty()) paragraph(notices.note);
     if (!notices.trials_note.empty()) paragraph(notices.trials_note);
+    for (const std::string& note : notices.pressure_notes) warning_paragraph(note);
     // what was to be read before the first press makes room for what comes after it
     if (shown.trial.touched_s && !shown.experimenter) return;
     for (const std::string& note : notices.device_notes) paragraph(note);

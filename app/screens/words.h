@@ -250,6 +250,8 @@ inline constexpr const char* kHistoryKeptIn = "Kept in {}.";
 inline constexpr const char* kHistoryNotKept = "Results are not kept: see the settings.";
 inline constexpr const char* kDeleteResults = "Delete all results";
 inline constexpr const char* kDeleteAsk = "Delete the results of all trials ({})? They cannot be restored.";
+inline constexpr const char* kDeleteAskUnread =
+    "Delete the results of all trials ({}), and those that cannot be read ({})? They cannot be restored.";
 inline constexpr const char* kDeleteNow = "Delete";
 inline constexpr const char* kCancel = "Cancel";
 inline constexpr const char* kLearningCurve = "Learning curve (filled: test, hollow: practice)";

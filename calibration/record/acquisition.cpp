@@ -305,6 +305,7 @@ void drop_last_point(Recording& recording) {
     if (session.points.empty()) return;
     session.points.pop_back();
     session.last_level = platform::kMissing;  // the same place may be captured again
+    if (recording.known_repeats >= 0) recording.knowledge = knowledge_of(recording.arguments.options, session.points);
     save_points(recording);
 }
 

@@ -201,6 +201,18 @@ TEST_CASE("calibrate: repeats that drift are told") {
     CHECK(calibration.drift->per_repeat == close_to(0.04).epsilon(0.15));
     CHECK(calibration.by_repeats);
     CHECK(any_with(calibration.warnings, "repeats differ by"));
+
+    CalibrationRows two;  // at levels of their own, as a hand holds them, so that the curve can go through each point
+    for (int r = 0; r < 2; ++r) {
+        for (int i = 1; i <= 14; ++i) {
+            const double level = i / 14.5 + 0.012 * r;
+            add_row(level, (0.05 + 2.95 * std::pow(level, 1.5)) * (1.0 + 0.06 * r), r, two);
+        }
+    }
+    const Calibration apart = calibrate(two, {});
+    REQUIRE(apart.drift);
+    CHECK(apart.drift->spread == close_to(0.06 / 1.03).epsilon(0.2));
+    CHECK(any_with(apart.warnings, "repeats differ by"));
 }
 
 TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
@@ -260,13 +272,13 @@ TEST_CASE("calibrate: points far off the curve are told, and whether they pull i
 }
 
 TEST_CASE("calibrate: of two readings that differ the curve takes the middle, which is told with its place") {
-    const auto warnings_with = [](int presses) {
+    const auto warnings_with = [](int presses, double slip = 1.5) {
         CalibrationRows rows;
         for (int press = 0; press < presses; ++press) {
             for (int i = 1; i <= 14; ++i) {
                 const double force_N = 0.05 + 2.95 * std::pow(i / 14.0, 1.5);
                 const double noise = 1.0 + 0.004 * ((7 * i + 5 * press) % 5 - 2);
-                add_row(i / 14.0, force_N * noise * (i == 7 && press == 0 ? 1.5 : 1.0), press, rows);
+                add_row(i / 14.0, force_N * noise * (i == 7 && press == 0 ? slip : 1.0), press, rows);
             }
         }
         return calibrate(rows, {}).warnings;
@@ -275,6 +287,7 @@ TEST_CASE("calibrate: of two readings that differ the curve takes the middle, wh
     CHECK(any_with(warnings_with(2), "50 %"));
     CHECK(any_with(warnings_with(2), "press these levels again, until each has three readings"));
     CHECK_FALSE(any_with(warnings_with(2), "count little"));
+    for (const int presses : {1, 2}) CHECK_FALSE(any_with(warnings_with(presses, 3.0), "count little"));
     CHECK(any_with(warnings_with(4), "count little"));
 }
 

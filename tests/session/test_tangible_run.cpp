@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 #include <limits>
 
+#include "devices/limits.h"
 #include "files/text.h"
 #include "scene/plan.h"
+#include "session/tangible_body.h"
 #include "session/tangible_run.h"
 #include "session/tangible_run_sink.h"
 #include "tests/mechanics/allocation_count.h"
@@ -54,6 +56,32 @@ TEST_CASE("tangible run: on virtual time a seed gives the same log byte for byte
     CHECK(ticks[0] == ticks[1]);
     CHECK(rows[0] == rows[1]);
     CHECK(ticks[0] != ticks[2]);
+}
+
+TEST_CASE("tangible run: the devices are the soft device, its lines and its sensor") {
+    const SmallRun run;
+    for (const bool simulated : {true, false}) {
+        std::string roles;
+        for (const TactileDevice& device : devices_of(*run.plan, simulated)) {
+            roles += device.role + " ";
+            CHECK(device.port.empty() == (simulated || device.role == "soft device"));
+        }
+        CHECK(roles == "soft device motors sensor ");
+    }
+}
+
+TEST_CASE("tangible live: a stop of the guard is named by its reason") {
+    const SmallRun run;
+    const TangibleSink sink(*run.plan, {}, {});
+    TickRecord record;
+    TangibleMoment moment;
+    record.command.fault = tangible::TickFault::stopped;
+    for (const devices::Fault guard : {devices::Fault::none, devices::Fault::stopped, devices::Fault::silence}) {
+        record.guard = guard;
+        fill_moment(record, sink, 100.0, moment);
+        CHECK(moment.stopped);
+        CHECK(moment.fault == devices::text(guard == devices::Fault::none ? devices::Fault::stopped : guard));
+    }
 }
 
 TEST_CASE("tangible run: recorded rows give the same commands to the last bit") {

@@ -164,7 +164,8 @@ TEST_CASE("report: more than twice the marks under one condition are warned of")
         seen.rows.push_back({1, person, -1, 0, 1, 2, 0});
     }
     const auto warns = [&] {
-        return contains(report_markdown(make_report(seen, {})), "WARNING: clear has 7 marks, vague 3");
+        return contains(report_markdown(make_report(seen, {})),
+                        "WARNING: clear has 7 marks (hits and false ones, each nodule once), vague 3");
     };
     CHECK_FALSE(warns());  // six and three
     seen.rows.push_back({0, 0, -1, 1, 1, 0, 0});

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/screens/history_screen.h"
+#include "app/screens/words.h"
 #include "scene/advance.h"
 #include "scene/mapping.h"
 #include "tests/app/live/desk.h"
@@ -363,4 +364,20 @@ TEST_CASE("live: a scene with a random turn is drawn in all eight, another one s
     draw_turn(plain);
     CHECK(plain.mapping.rotate_deg == 0);
     CHECK_FALSE(plain.mapping.flip);
+}
+
+TEST_CASE("live: a finger without a sensor is named as soon as its press shows it") {
+    Desk desk("");
+    Sample sample;
+    sample.tool = Tool::finger;
+    sample.pressure = 1.0;
+    for (int i = 0; i < 100; ++i) {
+        sample.phase = i == 0 ? Phase::down : Phase::move;
+        sample.t_host_s = 0.02 * i;
+        watch(sample, desk.app.pressure);
+    }
+    note_devices(desk.window, desk.app);
+    REQUIRE(desk.app.notices.pressure_notes.size() == 1);
+    CHECK(desk.app.notices.pressure_notes[0] == words::filled(words::kReportsConstant, {"finger"}));
+    CHECK(desk.app.notices.offer_hold);
 }

@@ -81,7 +81,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     if (kept_pictures() == nullptr) {  // pictures to be looked at show the app without trouble
         trial.notices.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
         trial.notices.offer_hold = true;
-        trial.notices.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+        trial.notices.pressure_notes = {"This pen reports always the same pressure: it has no sensor."};
     }
     Screens asked{trial.notices};
     asked.asked.emplace().again = true;
