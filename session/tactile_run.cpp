@@ -77,8 +77,9 @@ void TactileSink::take(const StepRecord& record, std::span<const double> reached
 // Into the file at once: it is what tells which rows of the other files were not rendered.
 void TactileSink::log_fault(const StepRecord& record) {
     fault_ = record.fault;
-    const std::string what = fault_ == devices::Fault::none ? "none" : record.fault_words;
-    faults_->append(files::number_text(record.command.time_s) + '\t' + what + '\n');
+    const bool named = fault_ != devices::Fault::none && *record.fault_words != '\0';
+    const std::string_view what = named ? record.fault_words : devices::text(fault_);
+    faults_->append(files::number_text(record.command.time_s) + '\t' + std::string(what) + '\n');
     faults_->flush();
 }
 

@@ -17,7 +17,7 @@ struct StepRecord {
     std::int64_t lost = 0;   // packets so far
     double step_ns = 0.0;    // how long it took; 0: not measured
     devices::Fault fault = devices::Fault::none;
-    const char* fault_words = "";  // static
+    const char* fault_words = "";  // static; empty: text(fault)
     bool latched = false;
 };
 

@@ -24,8 +24,8 @@ void take_start(TangiblePlan& plan) {
     const ForwardAnswer prepared = prepare_press(model, plan.start, floor.force_N);
     if (prepared.status == DeviceStatus::slow)
         plan.notes.push_back(
-            "the pretension that this tissue wants at the depth floor is beyond the device's limits; the limit is "
-            "taken");
+            "the pretension that this tissue wants at the depth floor is beyond the device's limits; the "
+            "nearest within them is taken");
     else if (prepared.status != DeviceStatus::good && prepared.status != DeviceStatus::unstable)
         throw std::runtime_error("the device " + model.device.name + " has no equilibrium at its pretension (" +
                                  name_of(prepared.status) + ")");

@@ -244,14 +244,16 @@ TEST_CASE("tactile run: when a fault began and ended stands in a file of its own
         for (int k = 0; k < 100; ++k) {
             record.command.time_s = 1e-3 * k;
             record.fault = k >= 20 && k < 60 ? devices::Fault::stopped : devices::Fault::none;
+            if (k >= 80) record.fault = devices::Fault::silence;
+            record.fault_words = k >= 80 ? "nothing comes from the pins" : "";
             sink.take(record, {});
         }
         sink.finish({});
         CHECK(sink.result.logged);
-        CHECK(sink.result.steps.relaxed_steps == 41);  // and the one before, whose command the guard had replaced
+        CHECK(sink.result.steps.relaxed_steps == 62);  // and each one before, whose command the guard had replaced
     }
     const std::string began = "time_s\tfault\n0.02\t" + std::string(devices::text(devices::Fault::stopped));
-    CHECK(file_text(folder / "faults.tsv") == began + "\n0.06\tnone\n");
+    CHECK(file_text(folder / "faults.tsv") == began + "\n0.06\tnone\n0.08\tnothing comes from the pins\n");
 }
 
 TEST_CASE("tactile run: a step with its guard allocates nothing") {
