@@ -19,7 +19,7 @@ enum class Fault : std::uint8_t {
     none,
     stopped,          // by a person (F12)
     not_a_number,     // a command that is not finite
-    silence,          // nothing came from the device for silence_s
+    silence,          // nothing comes from the arm, the force sensor that it follows, or a board of the pins
     out_of_range,     // the arm says that it is where it cannot be
     too_fast,         // the arm moves faster than a hand may
     board_error,      // a board of the pins reports errors again and again

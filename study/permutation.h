@@ -14,7 +14,8 @@ struct Permutation {
     bool exact = true;  // false: from random exchanges, p = (1 + as far) / (1 + exchanges)
 };
 
-// All exchanges are counted up to this number of people (of sign_permutation: of those who differ), and above it kExchanges of them are drawn.
+// All exchanges are counted up to this number of people (of sign_permutation: of those who differ), and above it
+// kExchanges of them are drawn.
 inline constexpr int kMostExactPeople = 32;
 inline constexpr int kExchanges = 20000;
 

@@ -143,8 +143,8 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
 void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide) {
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
-    // Enter takes it, and the field is empty for the next one: a second Enter records nothing. While the pen is held down, the display gives a click of the mouse to nobody,
-    // so that the field takes the keys then, and a button would be of no use
+    // Enter takes it, and the field is empty for the next one: a second Enter records nothing. While the pen is held down, the
+    // display gives a click of the mouse to nobody, so that the field takes the keys then, and a button would be of no use.
     const bool presses = recording.session.touching;
     if (presses && !guide.pressed && guide.note == words::kRecorded) guide.note.clear();  // of the press before
     guide.pressed = presses;

@@ -216,6 +216,24 @@ TEST_CASE("serve: only who asks from here, as he should, changes anything") {
     CHECK(desk.end() == 0);
 }
 
+TEST_CASE("serve: protocols of one's own are served from a folder that is named") {
+    const Place place;
+    std::string message;
+    const std::filesystem::path mine = place.folder / "mine";
+    std::filesystem::create_directories(mine);
+    CHECK(run("serve --port 0 --assets " + mine.string(), place.folder, &message) == 2);
+    CHECK(contains(message, "--assets: found '" + mine.string() + "', expected a folder with one of"));
+    std::filesystem::create_directories(mine / "protocols");
+    files::write_text_atomically(mine / "protocols/own.json", "{}");
+    DeskProcess desk(place.arguments({"--assets", mine.string()}));
+    httplib::Client client("127.0.0.1", desk.port);
+    const Json files = Json::parse(client.Get("/api/files")->body);
+    REQUIRE(files["protocols"].size() == 1);
+    CHECK(files["protocols"][0]["path"] == "/files/protocols/own.json");
+    CHECK(client.Get("/files/protocols/own.json")->body == "{}");
+    CHECK(desk.end() == 0);
+}
+
 TEST_CASE("serve: without TLS this machine alone, without a code") {
     const Place place;
     std::string message;
