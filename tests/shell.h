@@ -16,11 +16,13 @@ struct Called {
     std::string err;
 };
 
-// A command line of the shell, without input.
+// A command line of the shell, without input. One that hangs ends after ten minutes with status 124, so that the test can
+// say which it was.
 inline Called shell(const std::string& command) {
     const TemporaryFolder folder;
-    const std::string whole =
-        "( " + command + " ) >" + (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
+    files::write_text_atomically(folder / "command", command + "\n");
+    const std::string whole = "timeout -k 10 600 sh " + (folder / "command").string() + " >" +
+                              (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
     const int status = std::system(whole.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, files::read_text(folder / "out"),
             files::read_text(folder / "err")};

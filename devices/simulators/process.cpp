@@ -1,11 +1,13 @@
 #include "devices/simulators/process.h"
 
+#include <chrono>
 #include <fcntl.h>
 #include <filesystem>
 #include <signal.h>
 #include <stdexcept>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace palpa::devices::simulators {
@@ -60,9 +62,14 @@ std::string SimulatorProcess::line() {
 
 void SimulatorProcess::end() {
     if (pid_ <= 0) return;
-    ::kill(pid_, SIGTERM);
     ::kill(pid_, SIGCONT);  // one that was halted would never end
-    ::waitpid(pid_, nullptr, 0);
+    ::kill(pid_, SIGTERM);
+    constexpr int kTries = 500;
+    int tries = 0;
+    while (::waitpid(pid_, nullptr, WNOHANG) == 0) {
+        if (++tries == kTries) ::kill(pid_, SIGKILL);  // after five seconds it hangs
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
     pid_ = -1;
 }
 
