@@ -41,10 +41,12 @@ std::vector<Choice> choices(const char* kind) {
     return out;
 }
 
-// A name without a folder that is not here is one of the choices below, with or without its ending.
+// A name without a folder that is not here is one of the choices below, with or without its ending. A folder of that name is
+// meant only if it is a map: `palpa run tactile` may be typed beside a folder "tactile".
 fs::path scene_file(const std::string& name, const fs::path& assets) {
     const fs::path given(name);
-    if (fs::exists(given)) return given;
+    const bool here = fs::exists(given);
+    if (here && (!fs::is_directory(given) || fs::exists(given / "map.json"))) return given;
     std::string places;
     for (const fs::path& root : {assets, user_folder()}) {
         if (root.empty()) continue;
@@ -54,6 +56,7 @@ fs::path scene_file(const std::string& name, const fs::path& assets) {
                                      root / "maps" / (name + ".map")})
             if (fs::exists(file)) return file;
     }
+    if (here) return given;  // what is missing in it is named by its reader
     throw files::bad_input(name, "", "nothing",
                            "a scene SCENE.json, a map folder, or the name of a scene or map in " + places);
 }

@@ -104,6 +104,17 @@ CalibrationRows only(const CalibrationRows& rows, const std::vector<int>& direct
     return out;
 }
 
+// Returns how long the presses of a run last, on average: sampled without a gap, it may hold several.
+double press_s(const CalibrationRows& rows, const std::vector<int>& direction, const Run& run) {
+    int before = 0, presses = 0;
+    for (std::size_t i = run.from; i < run.to; ++i) {
+        if (direction[i] == 0) continue;
+        presses += direction[i] == 1 && before != 1;
+        before = direction[i];
+    }
+    return (rows.time_s[run.to - 1] - rows.time_s[run.from]) / std::max(presses, 1);
+}
+
 // What a lag is looked for in: the rows, with the times at which each force is known at every lag that is tried.
 struct LagSearch {
     const CalibrationRows& rows;
@@ -123,7 +134,7 @@ LagSearch lag_search(const CalibrationRows& rows, const std::vector<int>& direct
     for (const double force_N : smoothed_N(rows, out.runs))
         out.log_force.push_back(force_N > least_N ? std::log(force_N) : platform::kMissing);
     double longest_s = 0.0;
-    for (const Run& run : out.runs) longest_s = std::max(longest_s, rows.time_s[run.to - 1] - rows.time_s[run.from]);
+    for (const Run& run : out.runs) longest_s = std::max(longest_s, press_s(rows, direction, run));
     out.most_s = std::min(kMost_s, 0.2 * longest_s);
     return out;
 }

@@ -23,6 +23,14 @@ std::vector<std::size_t> by_level(const std::vector<double>& level) {
     return order;
 }
 
+// By how much each force is off the middle of those beside it; three at least.
+std::vector<double> bends_of(const std::vector<double>& force_N) {
+    std::vector<double> bends;
+    for (std::size_t i = 1; i + 1 < force_N.size(); ++i)
+        bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
+    return bends;
+}
+
 void check_enough(const CalibrationRows& rows) {
     const std::set<double> levels(rows.level.begin(), rows.level.end());
     if (levels.size() < 3) {
@@ -58,21 +66,26 @@ void check_unit(const CalibrationRows& rows) {
                                    std::string(gf ? "newtons? name the column force_N;" : "is the column in newtons?") +
                                    " --any-force if it is right)");
     }
-    // rows in another unit than their neighbours in level are off by a factor of 102
+    // rows in another unit than their neighbours in level are off by a factor of 102, and by more than the sensor's noise
     const auto order = by_level(rows.level);
+    std::vector<double> ordered_N;
+    for (const std::size_t i : order) ordered_N.push_back(rows.force_N[i]);
+    constexpr double kQuartile = 0.3186;  // of the size of standard normal numbers: three rows of four may be mixed up
+    const double least_N = 6.0 * files::quantile(bends_of(ordered_N), 0.25) / (kQuartile * std::sqrt(1.5));
     for (std::size_t i = 0; i < order.size(); ++i) {
         constexpr std::size_t kNear = 3;
         std::vector<double> near;
         for (std::size_t j = i > kNear ? i - kNear : 0; j < std::min(order.size(), i + kNear + 1); ++j) {
             if (j != i) near.push_back(rows.force_N[order[j]]);
         }
-        const double factor = rows.force_N[order[i]] / files::median(near);
+        const double near_N = files::median(near), factor = ordered_N[i] / near_N;
+        if (std::abs(ordered_N[i] - near_N) < least_N) continue;
         const bool gf_here = factor > 50.0 && factor < 200.0;
         const bool N_here = factor < 1.0 / 50.0 && factor > 1.0 / 200.0;
         if (rows.level[order[i]] > 0.0 && (gf_here || N_here)) {
             throw files::bad_input(
-                rows.file, line_of(rows, order[i]) + ", force", files::short_number(rows.force_N[order[i]]) + " N",
-                "about " + files::short_number(files::median(near)) +
+                rows.file, line_of(rows, order[i]) + ", force", files::short_number(ordered_N[i]) + " N",
+                "about " + files::short_number(near_N) +
                     " N as at levels beside it (gram-force and newtons mixed up? --any-force if it is right)");
         }
     }
@@ -194,10 +207,7 @@ double activation(const CalibrationRows& rows, double lowest) {
 
 double noise_N(const std::vector<double>& force_N) {
     if (force_N.size() < 3) return 0.0;
-    std::vector<double> bends;
-    for (std::size_t i = 1; i + 1 < force_N.size(); ++i)
-        bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
-    return 1.4826 * files::median(bends) / std::sqrt(1.5);
+    return 1.4826 * files::median(bends_of(force_N)) / std::sqrt(1.5);
 }
 
 void check_rows(const CalibrationRows& rows, bool any_force) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "devices/device_json.h"
+#include "devices/force_sensor.h"
 
 namespace palpa::devices {
 
@@ -45,6 +46,12 @@ bool ShapeGuard::poll() noexcept {
         if (report.arm_readings > newest_.arm_readings) link_health_.round_trip.add(report.arm.round_trip_s);
         newest_ = report;
         fresh = true;
+    }
+    const double now_s = steady_s();
+    if (fresh) reported_s_ = now_s;
+    if (reported_s_ > 0.0 && now_s - reported_s_ > kGuardSilence_s && newest_.fault == Fault::none) {
+        ++newest_.count[static_cast<std::size_t>(Fault::silence)];
+        newest_.fault = Fault::silence;
     }
     if (n < 0) {
         if (newest_.fault != Fault::guard_gone) ++newest_.count[static_cast<std::size_t>(Fault::guard_gone)];

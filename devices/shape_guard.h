@@ -21,6 +21,9 @@ files::Json shape_rig_json(const ShapeRig& rig);
 ShapeRig read_shape_rig(files::JsonReader reader);
 Limits limits_of(const ShapeRig& rig);
 
+// A guard that says nothing for so long, not even that it is there, is a fault: silence.
+inline constexpr double kGuardSilence_s = 0.25;
+
 // A command's values: those of the arm (force_N, feedforward_N, depth_m, mode), then the heights of the pins.
 inline constexpr std::size_t kArmValues = 4;
 
@@ -52,10 +55,12 @@ class ShapeGuard {
 
     void stop() noexcept { link_.send(GuardWord::stop); }
     void release() noexcept { link_.send(GuardWord::release); }
+    pid_t pid() const { return link_.pid(); }
 
   private:
     GuardLink link_;
     ShapeReport newest_;
+    double reported_s_ = 0.0;  // when that came
     LinkHealth link_health_;
 };
 

@@ -202,8 +202,10 @@ void keep_last_place(const scene::View& before, const scene::View& now, Trial& t
     trial.last_px = now.centre_px + now.input_px_per_m.cwiseProduct(now.axes * (p_m - now.area.centre_m));
 }
 
-// Before the state is replaced: its counts stay in those of the run.
+// Before trial and state are replaced: a trial that was not finished stays in the list, and its counts in those of the run.
 void add_to_totals(Session& session) {
+    if (session.trial.touched_s && !session.trial.finished)
+        session.ended.push_back(trial_json(*session.plan, session.trial));
     std::vector<std::string>& pressed = session.pressed_scenes;
     const std::string& name = session.scene.name;
     if (session.state.extremes.force_N > 0.0 && std::find(pressed.begin(), pressed.end(), name) == pressed.end())
@@ -286,7 +288,7 @@ void take_sample(const platform::Sample& sample, Session& session) {
         note_event("switch_on", session.trial.now_s, session);
     flush_if_due(session);
     if (!session.trial.finished) return;
-    session.finished.push_back(trial_json(*session.plan, session.trial));
+    session.ended.push_back(trial_json(*session.plan, session.trial));
     if (session.record) session.record->sync();
     if (session.log) session.log->sync();
 }
@@ -301,7 +303,7 @@ void flush_if_due(Session& session) {
 }
 
 files::Json trials_json(const Session& session) {
-    files::Json trials = session.finished;
+    files::Json trials = session.ended;
     if (!session.trial.finished) trials.push_back(trial_json(*session.plan, session.trial));
     return trials;
 }

@@ -57,7 +57,8 @@ struct Session {
     std::string began_utc;
     std::int64_t flushed_ns = 0;  // when the log was last flushed, steady clock
     std::optional<platform::TraceWriter> record;
-    files::Json finished = files::Json::array();  // trial_json() of each finished trial
+    files::Json ended =
+        files::Json::array();  // trial_json() of each trial that was finished, or broken off after a touch
 };
 
 // Returns a trace's screen as the area of the tissue; it holds until a sample of action resize.
@@ -85,7 +86,7 @@ void flush_if_due(Session& session);
 // trial its results are on the disk. Does nothing once the trial is finished.
 void take_sample(const platform::Sample& sample, Session& session);
 
-// Returns trial_json() of each finished trial, and of the one that is going on.
+// Returns trial_json() of each trial that was finished, or broken off after a touch, and of the one that is going on.
 files::Json trials_json(const Session& session);
 
 // Returns false once anything could not be written.

@@ -210,9 +210,11 @@ TangibleLive::TangibleLive(const scene::Scene& scene, std::shared_ptr<const scen
     : works_(std::make_unique<Works>()) {
     Works& works = *works_;
     works.scene_plan = std::move(plan);
-    works.plan = std::make_shared<const TangiblePlan>(tangible::make_tangible_plan(scene, *works.scene_plan));
+    TangiblePlan made = tangible::make_tangible_plan(scene, *works.scene_plan);
     std::string name = scene.tangible->plant;
     if (name.empty() && options.simulate) name = "exact";
+    if (name.empty()) tangible::command_as_wired(false, made);
+    works.plan = std::make_shared<const TangiblePlan>(std::move(made));
     std::optional<tangible::Plant> plant;
     if (!name.empty()) plant = make_plant(works.plan->model, tangible::read_plant(name), works.plan->loop);
     works.thread = std::make_unique<TangibleThread>(works.plan, plant, std::vector<std::string>{}, Finger{},

@@ -70,7 +70,7 @@ DepthDifference difference(const MapDifference& d, std::size_t first, std::size_
     out.mean_a_N /= n;
     out.bias_N /= n;
     out.rms_N = std::sqrt(out.rms_N / n);
-    out.median_N = files::upper_median(sizes);
+    out.median_N = files::median(sizes);
     return out;
 }
 

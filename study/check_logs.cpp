@@ -21,10 +21,7 @@ const Item* item_of(const Protocol& protocol, const Rating& answer) {
 
 bool offers(const Item& item, const std::string& answer) {
     if (answer == "n/a") return true;
-    double value = 0.0;
-    if (item.from)
-        return files::parse_number(answer, value) && value >= *item.from && value <= *item.to &&
-               value == std::trunc(value);
+    if (item.from) return is_step_of(item, answer);
     const auto is_it = [&](const std::string& choice) { return answer_text(choice) == answer; };
     return item.choices.empty() || std::any_of(item.choices.begin(), item.choices.end(), is_it);
 }
@@ -58,14 +55,17 @@ std::vector<Rating> answers_to_questions(const Protocol* protocol, const std::st
             continue;
         }
         const auto [it, fresh] = place.emplace(std::pair(answer.condition, answer.item), out.size());
+        const bool chosen = item != nullptr && !item->choices.empty();
         if (fresh) {
             out.push_back(answer);
+            out.back().chosen = chosen;
             continue;
         }
         notes.push_back("sub-" + code + ": " + question_of(answer) + " is answered more than once, " +
                         files::shown(out[it->second].value) + " and then " + files::shown(answer.value) +
                         ": the last answer counts");
         out[it->second] = answer;
+        out[it->second].chosen = chosen;
     }
     return out;
 }

@@ -66,6 +66,7 @@ struct Answer {
     std::string item;
     std::string value;
     int participant = -1;  // -1: not given
+    bool chosen = false;   // one of the question's texts, which may look like numbers
 };
 
 // How a condition of the protocol presents its tissue.

@@ -131,7 +131,15 @@ std::string analysis_part(const Protocol& protocol) {
                   std::string("as the primary one, exploratory; p corrected by Holm ") + kHolmFamilies +
                       (protocol.groups.size() > 1 ? "; interactions of PPV are not tested" : "")) +
         sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
-    if (any_pairs(protocol, false)) {
+    const auto searched = [&](bool by_hand) {
+        for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
+            if (!compares(task_of(protocol, i)) && (protocol.conditions[i].modality == Modality::hand) == by_hand)
+                return true;
+        }
+        return false;
+    };
+    if (searched(true)) out += sheet_row("found nodules and false marks by hand", "as the experimenter types them in");
+    if (searched(false)) {
         out +=
             sheet_row(
                 "a mark is a hit",
@@ -141,10 +149,11 @@ std::string analysis_part(const Protocol& protocol) {
             sheet_row(
                 "free response",
                 "wAFROC1, since each condition has one tissue, with nodules; people and cases random (Obuchowski and "
-                "Rockette, jackknife)") +
-            sheet_row("nodules as a sample",
-                      "mixed logistic model with people and nodules crossed, likelihood-ratio test");
+                "Rockette, jackknife)");
     }
+    if (any_pairs(protocol, false))
+        out += sheet_row("nodules as a sample",
+                         "mixed logistic model with people and nodules crossed, likelihood-ratio test");
     if (any_task(protocol, TaskKind::choice))
         out += sheet_row("choices",
                          "share of right answers against one half; psychometric functions with lapses up to 0.05");
@@ -166,13 +175,20 @@ std::string analysis_part(const Protocol& protocol) {
 }
 
 std::string sample_part(const Protocol& protocol) {
+    const char* refused = any_task(protocol, TaskKind::staircase) ? "staircases" : nullptr;
+    bool any = false;  // that is simulated in memory
+    for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
+        const bool choice = task_of(protocol, i) == TaskKind::choice, scene = !protocol.conditions[i].scene.empty();
+        if (choice && scene && refused == nullptr) refused = "choices that are felt through a scene";
+        any = any || choice || scene;
+    }
+    if (!any) refused = "conditions by hand only";
     const std::string n = protocol.planned_participants > 0 ? std::to_string(protocol.planned_participants) : "";
     return "\n## Sample size\n\n| | |\n| --- | --- |\n" + sheet_row("planned participants", sheet_value(n)) +
            sheet_row("stopping rule", sheet_value(protocol.stopping_rule)) +
-           sheet_row("power",
-                     any_task(protocol, TaskKind::staircase)
-                         ? "`palpa study power` takes no staircases: how the number was found is to be written here"
-                         : "`palpa study power`, with its output beside this sheet");
+           sheet_row("power", refused != nullptr ? "`palpa study power` takes no " + std::string(refused) +
+                                                       ": how the number was found is to be written here"
+                                                 : "`palpa study power`, with its output beside this sheet");
 }
 
 // Tests in their order; equal ones in a row are counted.

@@ -340,6 +340,12 @@ TaskKind task_of(const Protocol& protocol, std::size_t condition) {
     return protocol.conditions[condition].task.value_or(protocol.task);
 }
 
+bool is_step_of(const Item& scale, const std::string& answer) {
+    double value = 0.0;
+    return files::parse_number(answer, value) && value >= *scale.from && value <= *scale.to &&
+           value == std::trunc(value);
+}
+
 bool compares(TaskKind task) { return task != TaskKind::find; }
 
 std::optional<std::size_t> reference_condition_of(const Protocol& protocol, std::size_t condition) {

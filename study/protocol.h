@@ -67,6 +67,9 @@ struct Item {
     std::string low, high;             // what its ends mean, such as "not at all" and "very"; may be empty
 };
 
+// Whether an answer is a step of the item's scale (from and to are there): a whole number.
+bool is_step_of(const Item& scale, const std::string& answer);
+
 // Who made a study, for the description of its dataset and for its preregistration. All of it may be missing.
 struct DatasetAbout {
     std::vector<std::string> authors, funding, ethics_approvals;

@@ -14,6 +14,7 @@ struct Rating {
     std::string condition = "n/a";  // n/a: asked before the trials
     std::string item;
     std::string value = "n/a";  // n/a: no answer
+    bool chosen = false;        // one of the question's texts, as its protocol says
 };
 
 // Returns the file of a participant's answers, whether it is there or not.

@@ -363,7 +363,7 @@ Observations read_study(const fs::path& directory) {
         const std::vector<Rating> given = read_ratings(directory, code, out.notes);
         const Protocol* protocol = study.protocol ? &*study.protocol : nullptr;
         for (const Rating& r : answers_to_questions(protocol, code, given, out.notes)) {
-            out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index});
+            out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index, r.chosen});
         }
     }
     std::set<std::string> begun;

@@ -52,13 +52,13 @@ std::optional<Spread> spread_over(const Observations& seen, int condition, doubl
     return spread_of(std::move(values));
 }
 
-int people_with_tests(const Observations& seen) {
+std::set<int> people_with_tests(const Observations& seen) {
     std::set<int> people;
     for (const Observation& row : seen.rows) people.insert(row.participant);
     for (const Choices& row : seen.choices) people.insert(row.participant);
     for (const StifferAnswers& row : seen.stiffer) people.insert(row.participant);
     people.erase(-1);
-    return static_cast<int>(people.size());
+    return people;
 }
 
 // Why participants with logs are not in the tables. `seen`: of everybody.
@@ -66,9 +66,11 @@ void count_people_without(const Observations& seen, Report& report) {
     const auto has_logs = [&](const std::string& code) {
         return std::find(seen.participants.begin(), seen.participants.end(), code) != seen.participants.end();
     };
-    std::set<std::string> excluded, replaced;
-    for (const Exclusion& one : seen.exclusions)
-        if (!one.trial && has_logs(one.participant)) excluded.insert(one.participant);
+    std::set<std::string> tested, excluded, replaced;
+    for (const int person : people_with_tests(seen)) tested.insert(seen.participants[static_cast<std::size_t>(person)]);
+    for (const Exclusion& one : seen.exclusions)  // somebody each of whose tests is left out, too
+        if (has_logs(one.participant) && (!one.trial || tested.count(one.participant) == 0))
+            excluded.insert(one.participant);
     for (const Replacement& one : seen.replacements)
         if (has_logs(one.participant) && excluded.count(one.participant) == 0) replaced.insert(one.participant);
     report.withdrawn_people = seen.withdrawn_people;
@@ -260,7 +262,7 @@ void add_ratings(const Answer& like, const std::vector<Answer>& answers, Report&
     for (const Answer& one : answers) {
         if (one.condition != like.condition || one.item != like.item || one.value == "n/a") continue;
         double number = 0.0;
-        if (files::parse_number(one.value, number) && std::isfinite(number)) numbers.push_back(number);
+        if (!one.chosen && files::parse_number(one.value, number) && std::isfinite(number)) numbers.push_back(number);
         ++texts[one.value];
     }
     int n = 0;
@@ -302,7 +304,7 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     Report report;
     report.options = options;
     report.notes = seen.notes;
-    report.participants = people_with_tests(seen);
+    report.participants = static_cast<int>(people_with_tests(seen).size());
     count_people_without(seen, report);
     report.trials = static_cast<std::int64_t>(seen.trials.size());
     report.forced_choices = seen.from_logs ? static_cast<std::int64_t>(seen.stiffer.size()) : 0;

@@ -30,6 +30,39 @@ std::string stard_list(const std::vector<std::string>& items) {
     return out;
 }
 
+// What a study's trials are.
+struct StardTasks {
+    bool on_screen = false;  // nodules searched for, marks judged by the program
+    bool by_hand = false;    // nodules searched for, the answers typed in
+    bool choices = false;    // two surfaces compared
+};
+
+StardTasks tasks_in(const Protocol* protocol) {
+    StardTasks out;
+    for (std::size_t i = 0; protocol && i < protocol->conditions.size(); ++i) {
+        const bool pairs = compares(task_of(*protocol, i)), hand = protocol->conditions[i].modality == Modality::hand;
+        out.choices |= pairs;
+        out.on_screen |= !pairs && !hand;
+        out.by_hand |= !pairs && hand;
+    }
+    return out;
+}
+
+// What holds for each kind of trial that the study has; empty: not for this kind. Nothing is known without a protocol.
+std::string by_task(const StardTasks& tasks, const std::string& on_screen, const std::string& by_hand,
+                    const std::string& choices) {
+    std::string out;
+    const auto add = [&](bool there, const std::string& text) {
+        if (there) out += (out.empty() ? "" : "; ") + text;
+    };
+    add(tasks.on_screen, on_screen);
+    add(tasks.by_hand, "by hand: " + by_hand);
+    add(tasks.choices, tasks.on_screen || tasks.by_hand ? "choices: " + choices : choices);
+    return out;
+}
+
+bool only_choices(const Report& report) { return report.trials == 0 && report.forced_choices > 0; }
+
 std::string index_tests(const Protocol* protocol) {
     if (!protocol) return "";
     std::string out;
@@ -83,6 +116,7 @@ std::string stard_precision(const Report& report) {
                share_text(ci.low) + " to " + share_text(ci.high) + ", " +
                (one.se->bootstrap ? "bootstrap over participants" : std::string("Wilson, ") + wilson_is(*one.se)) + ")";
     }
+    if (report.forced_choices > 0) out += std::string(out.empty() ? "" : "; ") + "choices: choices.tsv";
     return out.empty() ? ""
                        : out + ". Intervals at " + files::short_number(100.0 * report.options.bootstrap.level) +
                              " %; comparisons in pairs.tsv";
@@ -97,6 +131,7 @@ std::string stard_sample(const Report& report, const Protocol* protocol) {
 }
 
 void stard_methods(const Report& report, const Protocol* protocol, StardForm& form) {
+    const StardTasks tasks = tasks_in(protocol);
     form.section("Methods");
     form.item("5", "data collection planned before or after tests and reference were done",
               known_or_open(protocol, "before: the protocol and its orders were fixed (SHA-256 in study.json)"));
@@ -109,31 +144,41 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
                   kToFillIn);
     form.item("9", "consecutive, random or convenience series");
     form.item("10a", "index test, so that it can be repeated", index_tests(protocol));
-    form.item(
-        "10b", "reference standard, so that it can be repeated",
-        known_or_open(protocol,
-                      "the map of the nodules of each trial's tissue, known by construction (..._settings.json)"));
+    form.item("10b", "reference standard, so that it can be repeated",
+              by_task(tasks, "the map of the nodules of each trial's tissue, known by construction (..._settings.json)",
+                      "the nodules of the phantom: " + kToFillIn,
+                      "which of both surfaces is stiffer, known by construction"));
     form.item("11", "why this reference standard",
-              known_or_open(protocol, "the places of the nodules are known exactly; on a real phantom: " + kToFillIn));
+              by_task(tasks, "the places of the nodules are known exactly", kToFillIn,
+                      "both stiffnesses are known; of real samples: " + kToFillIn));
     form.item("12a", "cut-offs of the index test, and whether fixed before",
-              known_or_open(protocol,
-                            "a mark within the nodule's diameter or 8 mm of its axis, whichever is larger, is a hit; "
-                            "every mark counts, whatever its confidence; fixed by the program before the study"));
-    form.item("12b", "cut-offs of the reference standard", known_or_open(protocol, "none: a nodule is there or not"));
+              by_task(tasks,
+                      "a mark within the nodule's diameter or 8 mm of its axis, whichever is larger, is a hit; "
+                      "every mark counts, whatever its confidence; fixed by the program before the study",
+                      "what the experimenter took for found: " + kToFillIn, "none: one of both surfaces is chosen"));
+    form.item("12b", "cut-offs of the reference standard",
+              by_task(tasks, "none: a nodule is there or not", "none: a nodule is there or not",
+                      "none: one surface is stiffer"));
+    const std::string told =
+        protocol && (tasks.on_screen || tasks.by_hand)
+            ? std::string("; the number of nodules was ") + (protocol->count_told ? "told" : "not told")
+            : "";
     form.item("13a", "what those who did the index test knew of the reference",
-              !protocol ? kToFillIn
-                        : std::string("nothing during tests; the number of nodules was ") +
-                              (protocol->count_told ? "told" : "not told"));
+              known_or_open(protocol, "nothing during tests" + told));
     form.item("13b", "what those who judged the reference knew of the index test",
-              known_or_open(protocol, "nobody judged it: hits are counted by the program"));
+              by_task(tasks, "nobody judged it: hits are counted by the program",
+                      "the experimenter, who judges and types: " + kToFillIn,
+                      "nobody judged it: right answers are counted by the program"));
     form.item("14", "how accuracy was estimated and compared", "report.md, first paragraphs");
     form.item("15", "how indeterminate results were handled",
-              known_or_open(protocol, "there are none: a mark is a hit, is on a nodule already found, or is false"));
+              by_task(tasks, "there are none: a mark is a hit, is on a nodule already found, or is false",
+                      "the experimenter's decision: " + kToFillIn, "there are none: one of both is chosen"));
     form.item(
         "16", "how missing data were handled",
         "nothing was filled in; comparisons are of participants with both conditions, others are counted as left out");
     form.item("17", "analyses of variability, planned or exploratory",
-              report.groups.empty()
+              only_choices(report) ? report.groups.empty() ? "none" : "groups compared in groups.tsv"
+              : report.groups.empty()
                   ? "spreads of people and nodules in the mixed model; else none"
                   : "groups compared in groups.tsv; spreads of people and nodules in the mixed model");
     form.item("18", "sample size and how it was chosen", stard_sample(report, protocol));
@@ -145,7 +190,8 @@ void stard_results(const Report& report, StardForm& form) {
     form.item("20", "who they were",
               "participants.tsv, and ratings.tsv where questions were asked; summary: " + kToFillIn);
     form.item("21a", "how severe the target condition was",
-              "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
+              only_choices(report) ? "choices.tsv names what was compared; what else the samples were: " + kToFillIn
+                                   : "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
     form.item("21b", "what else was there in those without it");
     form.item("22", "time and events between test and reference", "none: the reference is part of the tissue");
     form.item("23", "cross table of test and reference", stard_cross(report));

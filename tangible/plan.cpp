@@ -1,5 +1,6 @@
 #include "tangible/plan.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "files/input_error.h"
@@ -71,6 +72,23 @@ TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& sc
     plan.place_follows = !asked.at_m.has_value();
     plan.greatest_m = scene_plan.greatest_depth_m / plan.world.depth_scale;
     return plan;
+}
+
+void command_as_wired(bool asked, TangiblePlan& plan) {
+    const SoftDevice& device = plan.model->device;
+    if (!device.wires) return;
+    const auto drives_of = [&](devices::Drive drive) {
+        const auto& channels = device.wires->channels;
+        return std::find_if(channels.begin(), channels.end(), [&](const auto& one) { return one.drive == drive; });
+    };
+    const bool position = plan.loop.command == CommandKind::position;
+    const auto other = drives_of(position ? devices::Drive::force : devices::Drive::length);
+    if (other == device.wires->channels.end()) return;
+    if (asked || position)
+        throw files::bad_input(device.file, "wires.actuators, " + other->name + ".drive", position ? "force" : "length",
+                               position ? "length, since the drives are to be told positions (command)"
+                                        : "force, since the drives are to be told forces (--command)");
+    plan.loop.command = CommandKind::position;
 }
 
 TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan) {

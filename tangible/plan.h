@@ -54,4 +54,8 @@ TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& sc
 TangiblePlan make_tangible_plan(std::shared_ptr<const DeviceModel> model, const World& world,
                                 const Eigen::Vector2d& place_m, const LoopOptions& options);
 
+// For real drives, which take what their wires say: sets the plan's command to it. Throws InputError that names the actuator if
+// a cable's drive cannot take the command that was asked for, by the scene ("position") or as `asked`.
+void command_as_wired(bool asked, TangiblePlan& plan);
+
 }  // namespace palpa::tangible

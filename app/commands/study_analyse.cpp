@@ -12,6 +12,7 @@
 #include "files/folder_lock.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
+#include "files/table.h"
 #include "files/text.h"
 #include "study/long_tables.h"
 #include "study/protocol.h"
@@ -127,6 +128,9 @@ study::Observations read_observations(const AnalyseOptions& options) {
                                    "a table: logs hold their protocol's scale");
         return study::read_study(input);
     }
+    if (!options.scale.empty() && !files::read_tsv(input).has_column("kind"))
+        throw files::bad_input("--rating-scale", "", input + ", which holds no ratings",
+                               "a table of rated marks: condition participant case kind lesion rating");
     study::RatingScale scale;
     if (!options.scale.empty()) scale = {options.scale[0], options.scale[1]};
     if (!(scale.low < scale.high)) {

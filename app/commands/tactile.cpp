@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -62,8 +63,8 @@ void take_ports(const TactileOptions& options, tactile::TactilePlan& plan) {
     if (!plan.arm) throw files::InputError("--arm-port: found with a scene whose arm has no device, expected one");
     const auto colon = options.arm.rfind(':');
     double port = 0.0;
-    if (colon == std::string::npos || !files::parse_number(options.arm.substr(colon + 1), port) || port < 1.0 ||
-        port > 65535.0)
+    if (colon == std::string::npos || colon == 0 || !files::parse_number(options.arm.substr(colon + 1), port) ||
+        port < 1.0 || port > 65535.0 || port != std::floor(port))
         throw files::InputError("--arm-port: found '" + options.arm + "', expected HOST:PORT");
     plan.arm->host = options.arm.substr(0, colon);
     plan.arm->port = static_cast<int>(port);
@@ -74,11 +75,15 @@ void check_tactile_run(const TactileOptions& options) {
         throw files::InputError(
             "found no --replay PRESS.tsv, expected a press or recorded rows (the "
             "app's screen of arm and pins, key T, is for presses by hand)");
-    if (options.virtual_time && (!options.arm.empty() || !options.pins.empty()))
+    if (options.arm.empty() && options.pins.empty()) return;
+    if (options.virtual_time)
         throw files::InputError(
             "--virtual-time: found with a port, expected none: both simulators run in this process");
-    if (options.simulate && (!options.arm.empty() || !options.pins.empty()))
+    if (options.simulate)
         throw files::InputError("--simulate: found with a port, expected none: it starts the simulators itself");
+    if (holds_rows(options.replay))
+        throw files::InputError(options.replay +
+                                ": found recorded rows beside a port, expected one of the two: rows drive no device");
 }
 
 std::shared_ptr<tactile::TactilePlan> prepare_tactile(const TactileOptions& options, const scene::Scene& scene,
@@ -124,16 +129,15 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
     std::unique_ptr<tactile::Simulators> simulators;
     if (!rows && options.simulate && !options.virtual_time)
         simulators = tactile::start_simulators(options.replay, options.seed, *plan);
-    for (const session::TactileDevice& device :
-         session::devices_of(*plan, options.simulate || options.virtual_time || rows)) {
-        devices.push_back({{"role", device.role},
-                           {"name", device.name},
-                           {"port", options.virtual_time || rows ? "" : device.port},
-                           {"simulated", device.simulated}});
-    }
-    if (rows) {
+    if (rows) {  // no device takes part
         const auto fields = session::field_names<tactile::LoopFeedback>();
         return session::replay_rows(plan, session::read_device_rows(options.replay, fields), run);
+    }
+    for (const session::TactileDevice& device : session::devices_of(*plan, options.simulate || options.virtual_time)) {
+        devices.push_back({{"role", device.role},
+                           {"name", device.name},
+                           {"port", options.virtual_time ? "" : device.port},
+                           {"simulated", device.simulated}});
     }
     if (options.virtual_time) return session::run_virtual(plan, run);
     const Interrupt interrupt;
@@ -164,7 +168,7 @@ void run_tactile(const TactileOptions& options) {
     const scene::Scene scene = load_scene(options.scene);
     if (!options.log.empty()) {
         files::check_output_folder(options.log);
-        files::check_new(fs::path(options.log) / "steps.tsv");
+        for (const char* file : {"steps.tsv", "performance.json"}) files::check_new(fs::path(options.log) / file);
     }
     if (!scene.tactile)
         throw files::bad_input(options.scene, "tactile", "no such key", "one that says which arm or display there is");
@@ -175,6 +179,7 @@ void run_tactile(const TactileOptions& options) {
     files::Json json{{"scene", scene.name}, {"seed", options.seed}};
     json.update(tactile::figures_json(*plan, result.steps, result.mismatch, result.devices));
     json["devices"] = devices;
+    if (holds_rows(options.replay)) json["replay"] = options.replay;
     if (result.steps.relaxed_steps > 0) {
         const std::string relaxed = "a fault kept the devices at rest in " +
                                     std::to_string(result.steps.relaxed_steps) + " of " +

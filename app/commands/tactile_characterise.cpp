@@ -208,6 +208,7 @@ void check_characterise(const CharacteriseOptions& options) {
     files::check_output_folder(options.folder);
     // tables of two runs would stand side by side
     files::check_new(std::filesystem::path(options.folder) / "characterise.json");
+    if (options.compensation.empty()) files::check_new(std::filesystem::path(options.folder) / "compensation.json");
 }
 
 // One stiffness: strokes, line, and its entry in the report.
@@ -289,8 +290,9 @@ void add_tactile_characterise(CLI::App& tactile) {
         ->capture_default_str();
     command->add_option("--compensation", options->compensation,
                         "compensation file, or \"off\" (default: it is identified first)");
-    command->add_option("-o,--output", options->folder,
-                        "folder for tables, figure and the compensation file (tables are never overwritten)");
+    command->add_option(
+        "-o,--output", options->folder,
+        "folder for tables, figure and the compensation file (these are never overwritten, but for the figure)");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options, command] {
         options->depth_asked = command->count("--depth-mm") > 0;

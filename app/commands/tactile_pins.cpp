@@ -265,9 +265,10 @@ void add_tactile_pins(CLI::App& tactile) {
     calibrate->add_option("--pulses", options->pulses, "heights at which the pins are measured")
         ->check(CLI::Range(2, 50))
         ->capture_default_str();
-    calibrate->add_option("--seed", options->seed, "of the simulated pins");
+    calibrate->add_option("--seed", options->seed, "of the simulated pins")->needs(calibrate->get_option("--simulate"));
     calibrate->add_option("--scatter", options->scatter, "share by which simulated pins differ from the device file")
         ->check(CLI::Range(0.0, 0.5))
+        ->needs(calibrate->get_option("--simulate"))
         ->capture_default_str();
     calibrate->callback([options] { calibrate_pins(*options); });
 }

@@ -221,7 +221,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     if (!scene.tangible) throw files::bad_input(arguments.scene, "tangible", "no such key", "one that names a device");
     if (!arguments.log.empty()) {
         files::check_output_folder(arguments.log);
-        files::check_new(fs::path(arguments.log) / "ticks.tsv");
+        for (const char* file : {"ticks.tsv", "performance.json"}) files::check_new(fs::path(arguments.log) / file);
     }
     check_replay(arguments);
     const std::string plant_name = plant_of(arguments, scene);
@@ -229,8 +229,9 @@ void run_tangible(const TangibleRunArguments& arguments) {
     std::vector<devices::PressRow> press;  // read before the tissue is prepared, which takes seconds
     if (!arguments.press.empty()) press = devices::read_press(arguments.press);
     const scene::Plan scene_plan = session::make_plan_here(scene);
-    const auto plan = std::make_shared<const tangible::TangiblePlan>(
-        tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments, *scene.tangible)));
+    auto made = tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments, *scene.tangible));
+    if (real) tangible::command_as_wired(!arguments.command.empty(), made);
+    const auto plan = std::make_shared<const tangible::TangiblePlan>(std::move(made));
     double deepest_m = 0.0;
     for (const devices::PressRow& row : press) {
         check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
@@ -242,8 +243,11 @@ void run_tangible(const TangibleRunArguments& arguments) {
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     if (!plant_name.empty() && arguments.press.empty()) note_less_depth(finger_of(arguments, {}, *plan), json);
-    json["devices"] = devices_json(*plan, real, arguments.ports);
-    if (!arguments.replay.empty()) json["replay"] = arguments.replay;
+    json["devices"] = files::Json::array();
+    if (arguments.replay.empty())
+        json["devices"] = devices_json(*plan, real, arguments.ports);
+    else
+        json["replay"] = arguments.replay;  // no device takes part
     if (real) name_limits(result.guarded, json);
     note_missed(plan->loop.rate_Hz, json);
     note_beyond(deepest_m, *plan, json);

@@ -57,9 +57,9 @@ struct PartControl {
         std::size_t design;
         files::Json operation;
     };
-    std::vector<Undone> undone;                                     // the last one is done again first
-    std::optional<parts::Method> method;                            // that the person has chosen
-    std::map<std::filesystem::path, std::filesystem::path> copies;  // of designs, by what they were made of
+    std::vector<Undone> undone;                           // the last one is done again first
+    std::optional<parts::Method> method;                  // that the person has chosen
+    std::map<std::size_t, std::filesystem::path> copies;  // by the number of the design that was changed
 };
 
 // Everything that the app has open while its window is open.

@@ -66,14 +66,27 @@ EditedFiles edited_files(const fs::path& design) {
     return out;
 }
 
+// Whether another design of the scene is read from the same file.
+bool is_shared(std::size_t index, const std::vector<fs::path>& designs) {
+    return std::count(designs.begin(), designs.end(), designs.at(index)) > 1;
+}
+
 // The file that holds a design's edits since the scene was opened: a new one, since that of another day may be somebody's
-// work. A copy that is opened by itself is gone on with.
-fs::path edited_file(const fs::path& design, std::map<fs::path, fs::path>& copies) {
-    if (is_edited(design)) return design;
-    auto [copy, fresh] = copies.try_emplace(design);
+// work. A copy that is opened by itself is gone on with, unless another design shows it too.
+fs::path edited_file(std::size_t index, const std::vector<fs::path>& designs, std::map<std::size_t, fs::path>& copies) {
+    const fs::path& design = designs.at(index);
+    if (is_edited(design) && !is_shared(index, designs)) return design;
+    auto [copy, fresh] = copies.try_emplace(index);
     if (!fresh) return copy->second;
     fs::create_directories(edits_folder());
     return copy->second = edited_files(design).next;
+}
+
+// The design's last edits of another session; empty if there are none, or another design shows them already.
+fs::path earlier_file(std::size_t index, const std::vector<fs::path>& designs) {
+    if (is_edited(designs.at(index))) return {};
+    const fs::path last = edited_files(designs.at(index)).last;
+    return std::find(designs.begin(), designs.end(), last) == designs.end() ? last : fs::path();
 }
 
 void keep_design(const fs::path& file, App& app) {
@@ -92,7 +105,7 @@ void show_files(App& app) {
     const auto& designs = scene::part_options(scene.tissue)->designs;
     for (std::size_t i = 0; i < designs.size(); ++i) {
         view.kept.at(i) = is_edited(designs[i]) ? designs[i] : fs::path();
-        view.earlier |= app.parts.copies.empty() && !is_edited(designs[i]) && !edited_files(designs[i]).last.empty();
+        view.earlier |= app.parts.copies.empty() && !earlier_file(i, designs).empty();
     }
 }
 
@@ -169,7 +182,8 @@ template <class OperationFor>
 bool append_edit(std::size_t index, const OperationFor& operation_for, platform::Window& window, const Gui& gui,
                  App& app) {
     scene::Scene scene = wanted_scene(app);
-    fs::path& design = scene::part_options(scene.tissue)->designs.at(index);
+    std::vector<fs::path>& designs = scene::part_options(scene.tissue)->designs;
+    fs::path& design = designs.at(index);
     parts::EditedPart edited = parts::open_part(design);
     const files::Json operation = operation_for(edited.json);
     std::int64_t changed = 0;
@@ -182,7 +196,7 @@ bool append_edit(std::size_t index, const OperationFor& operation_for, platform:
         app.notices.note = words::kNothingChanged;
         return false;
     }
-    const fs::path file = edited_file(design, app.parts.copies);
+    const fs::path file = edited_file(index, designs, app.parts.copies);
     keep_names(design, edited.json);
     parts::save_part(edited, file);
     keep_design(file, app);
@@ -236,8 +250,8 @@ void open_earlier(platform::Window& window, const Gui& gui, App& app) {
     scene::Scene scene = wanted_scene(app);
     auto& designs = scene::part_options(scene.tissue)->designs;
     for (std::size_t i = 0; i < designs.size(); ++i) {
-        const fs::path last = edited_files(designs[i]).last;
-        if (is_edited(designs[i]) || last.empty()) continue;
+        const fs::path last = earlier_file(i, designs);
+        if (last.empty()) continue;
         // what the copy has more than its design can be undone
         for (std::size_t k = operations_of(designs[i]); k < operations_of(last); ++k) {
             app.parts.done.push_back({i, last});

@@ -50,6 +50,10 @@ void draw_limit(ImVec2 at, float width_px, double limit_N, float mm, ImDrawList&
 
 bool device_leads(const Shown& shown) { return arm_leads(shown) || soft_device_leads(shown); }
 
+bool device_runs(const Shown& shown) {
+    return (arm_leads(shown) && shown.tactile->runs) || (soft_device_leads(shown) && shown.tangible->runs);
+}
+
 double felt_force_N(const Shown& shown) {
     if (arm_leads(shown)) return shown.tactile->moment.force_N;
     if (soft_device_leads(shown)) return shown.tangible->moment.wanted_N;

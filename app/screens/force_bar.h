@@ -8,6 +8,7 @@ namespace palpa::app {
 
 // True if the motion of a force arm or of a soft device is the input, and not that on the screen.
 bool device_leads(const Shown& shown);
+bool device_runs(const Shown& shown);  // that device is connected and moves
 
 // What the person presses with, and how deep into the tissue: on the screen, or on the device that leads.
 double felt_force_N(const Shown& shown);

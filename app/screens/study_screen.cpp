@@ -206,7 +206,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
         if (!is_answer(items[i], answers[i])) {
             good = false;
             warning_paragraph(
-                words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
+                words::filled(words::kWholeFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
         }
         ImGui::PopID();
         gap(gui);

@@ -47,9 +47,12 @@ void draw_contact_note(const Shown& shown) {
     const bool held = shown.tactile != nullptr && shown.tactile->moment.held;
     // force and shape hold at the limit of force, or where the tissue is not known deeper, which soft tissue is below it
     const bool of_force = held && shown.tactile->moment.force_N > 0.98 * shown.tactile->force_limit_N;
-    const char* note = of_force ? words::kPressLightly
-                       : held   ? words::kNoDeeper
-                                : contact_note(shown.state.contact, shown.experimenter);
+    const bool leads = device_leads(shown);
+    const char* note = of_force                       ? words::kPressLightly
+                       : held                         ? words::kNoDeeper
+                       : leads && !device_runs(shown) ? words::kNoDevicePresses
+                       : leads                        ? (shown.state.touch.down ? words::kDevicePresses : "")
+                                                      : contact_note(shown.state.contact, shown.experimenter);
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 

@@ -84,7 +84,7 @@ void find_in_memory(MemoryStudy& all, int number, const study::PlannedTrial& tri
     session->state.time_every = 0;
     palpate_trial(all.protocol, all.protocol.conditions[shown], number, trial,
                   {all.seed, all.rate_Hz, all.effect.noise}, *session);
-    session->finished.clear();
+    session->ended.clear();
     add_finished(*session, all.protocol.conditions[trial.condition].id, number - 1, all.found);
 }
 

@@ -113,7 +113,7 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     }
     const double wall_s = files::steady_s() - began_s;
     const std::string stem = session.files->stem;
-    session.finished.clear();
+    session.ended.clear();
     if (!session::close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
         throw std::runtime_error(
             stem + ": the trial could not be written to its end (is the disk full?); the study has stopped");
@@ -136,7 +136,7 @@ void run_typed(Shared& shared, const study::PlannedParticipant& who, const study
     study::write_typed_trial(study::next_run(files.log, files.participant, files.task, files.first_run), *files.label,
                              trial.practice, static_cast<std::int64_t>(trial.seed), names,
                              typed_answers(*session.plan, session.trial));
-    session.finished.clear();
+    session.ended.clear();
     const std::lock_guard lock(shared.mutex);
     ++shared.result.trials;
 }

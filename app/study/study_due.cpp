@@ -121,9 +121,7 @@ const std::vector<study::Item>& due_items(const StudyRun& run) {
 }
 
 bool is_answer(const study::Item& item, const std::string& answer) {
-    if (answer.empty() || !item.from) return true;
-    double value = 0.0;
-    return files::parse_number(answer, value) && value >= *item.from && value <= *item.to;
+    return answer.empty() || !item.from || study::is_step_of(item, answer);
 }
 
 files::Json now_json(const StudyRun& run) {
@@ -161,7 +159,8 @@ std::vector<ShownText> shown_texts(const study::Protocol& protocol) {
     }
     for (const auto* items : {&protocol.demographics, &protocol.ratings}) {
         for (const study::Item& item : *items) {
-            texts.push_back({(items == &protocol.ratings ? "ratings: " : "demographics: ") + item.id, item.text});
+            texts.push_back({(items == &protocol.ratings ? "ratings: " : "demographics: ") + item.id,
+                             item.text + item.low + item.high});
             for (const std::string& choice : item.choices) texts.back().text += choice;
         }
     }

@@ -110,6 +110,8 @@ class RigServer {
             eventfd_t ignored = 0;
             ::eventfd_read(sensor_->poke(), &ignored);
         }
+        watch(rig_, steady_s(), found(),
+              guard_);  // before what has queued while the guard stood still is taken for new
         const bool commanded = receive();
         watch(rig_, steady_s(), found(), guard_);
         drive();

@@ -39,14 +39,18 @@ class ShapeServer {
         fresh_ = fresh_ || heard;
         readings_ += heard;
         sensed_ = sensed_ || newest_.has_sensor > 0.5;
+        watch();  // before what has queued while the guard itself stood still is taken for new
         const bool commanded = receive();
+        watch();
         const double now_s = steady_s();
-        if (driven_ && now_s - commanded_s_ > kLoopSilence_s) {
-            latch(Fault::loop_silent, guard_);
-            driven_ = false;
-        }
         if (!driven_ && now_s - sent_s_ >= kAlone_s) rest();
         if (heard || commanded || now_s - reported_s_ >= kShapeReport_s) report();
+    }
+
+    void watch() {
+        if (!driven_ || steady_s() - commanded_s_ <= kLoopSilence_s) return;
+        latch(Fault::loop_silent, guard_);
+        driven_ = false;
     }
 
     bool receive() {

@@ -123,7 +123,7 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
                           {"refined_N", refined_N}});
     }
     found.largest = *std::max_element(differences.begin(), differences.end());
-    found.median = files::upper_median(std::move(differences));
+    found.median = files::median(std::move(differences));
     const auto mesh_json = [](const MapTask& t) {
         return files::Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
                            {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},

@@ -127,8 +127,8 @@ Detection detect_regions(const Map& map, const std::string& file, const DetectOp
 
 void keep_regions(const Detection& detection, Map& map) {
     auto& nodules = map.nodules;
-    nodules.erase(std::remove_if(nodules.begin(), nodules.end(), [](const Nodule& n) { return !n.placed; }),
-                  nodules.end());
+    if (std::erase_if(nodules, [](const Nodule& n) { return !n.placed; }) > 0 && nodules.empty())
+        map.nodules_known = false;  // an earlier detection alone had named some
     const auto named = [&](const std::string& id) {
         return std::any_of(nodules.begin(), nodules.end(), [&](const Nodule& n) { return n.id == id; });
     };

@@ -49,6 +49,19 @@ TEST_CASE("scenes: a name alone is looked for here, then among those that ship; 
     CHECK(contains(message_of([] { load_scene("scenes/toothbrush.json"); }), "found nothing"));
 }
 
+TEST_CASE("scenes: a folder of a shipped scene's name that is no map does not hide the scene") {
+    const TemporaryFolder folder;
+    const fs::path before = fs::current_path();
+    fs::create_directories(folder / "toothbrush");
+    fs::create_directories(folder / "other");
+    fs::current_path(folder.path());
+    const fs::path found = load_scene("toothbrush").file;
+    const fs::path other = std::get<scene::MapOptions>(load_scene("other").tissue).folder;
+    fs::current_path(before);
+    CHECK(found == assets_folder() / "scenes/toothbrush.json");
+    CHECK(other == "other");  // what it lacks is said where the map is read
+}
+
 // Python's jsonschema is the independent judge: the readers of Palpa do not look at the schemas.
 TEST_CASE("assets: every shipped file is valid by the schema of its kind") {
     const std::string python = python_with("jsonschema");

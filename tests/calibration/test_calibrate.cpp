@@ -118,6 +118,20 @@ TEST_CASE("calibrate: the lag between pen and sensor is found and removed") {
     CalibrateOptions keep;
     keep.remove_lag = false;
     CHECK(calibrate(waves(0.11, 0.0, random), keep).quality.r2_newton < 0.98);
+    // five presses of 0.8 s, a row each 10 ms, sampled without a gap: no half period is taken for a lag
+    CalibrationRows quick;
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 400; ++i) {
+        const int k = i % 80;
+        add_row(0.02 + 0.96 * (k < 40 ? k : 79 - k) / 39.0, 0.0, i / 80, quick);
+        quick.force_N.back() = 0.11 * std::exp(3.4 * quick.level.back()) + 0.05 * normal(random);
+        quick.time_s.push_back(0.01 * (i + 1));
+        quick.phase.push_back(k < 40 ? PressPhase::press : PressPhase::release);
+    }
+    const Calibration pressed = calibrate(quick, {});
+    REQUIRE(pressed.lag_s);
+    CHECK(std::abs(*pressed.lag_s) < 2e-3);
+    CHECK(pressed.quality.r2_newton > 0.99);
     // a ramp alone fits any lag
     CalibrationRows ramp = waves(0.043, 0.0, random);
     for (auto* column : {&ramp.level, &ramp.force_N, &ramp.time_s}) column->resize(380);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <doctest/doctest.h>
+#include <random>
 
 #include "calibration/calibrate.h"
 #include "calibration/points.h"
@@ -137,6 +138,18 @@ TEST_CASE("hard case 3: gram-force and newtons mixed up are seen") {
     for (int i = 1; i <= 12; ++i)
         mixed += number_text(i / 12.0) + "," + number_text(i == 7 ? 0.4 * 101.97 : 0.05 * i) + "\n";
     CHECK(contains(refusal_of_points(mixed), "line 8, force: found 40.79 N, expected about"));
+    // light forces that drown in the noise of the sensor are no other unit; a tenth of the rows in another one are seen
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    std::string noisy = "level,force_N\n", tenth = noisy;
+    for (int i = 0; i < 300; ++i) {
+        const double force_N = 0.05 * std::exp(3.5 * i / 300.0);
+        noisy += number_text(i / 300.0) + "," + number_text(std::abs(force_N + 0.03 * normal(random))) + "\n";
+        tenth += number_text(i / 300.0) + "," +
+                 number_text(force_N * (1.0 + 0.02 * normal(random)) * (i % 10 == 5 ? 9.80665e-3 : 1.0)) + "\n";
+    }
+    CHECK(refusal_of_points(noisy) == "");
+    CHECK(contains(refusal_of_points(tenth), "gram-force and newtons mixed up?"));
 }
 
 TEST_CASE("hard case 3: times that do not rise, and a sensor that stands still") {

@@ -401,6 +401,43 @@ TEST_CASE("guard: arm and pins behind it go where they are told, and rest for go
         guard, [&](const ShapeReport& now) { return now.fault == Fault::stopped && wires.highest_mm() < 0.05; }));
 }
 
+TEST_CASE("guard: one that stands still is a fault while it does, and lets everything rest for good when it goes on") {
+    const std::vector<double> heights_m(36, 1.5e-3);
+    {
+        ShapeWires wires;
+        ShapeGuard guard(wires.rig(), PALPA_GUARD);
+        CHECK(soon([&] { return guard.poll(), guard.newest().ready; }));
+        CHECK(press_until(guard, [&](const ShapeReport&) { return wires.highest_mm() > 1.4; }));
+        const auto sent_until = [&](Fault wanted) {
+            return soon([&] {
+                guard.send({1.0, 0.0, 0.0, static_cast<double>(ArmMode::force)}, heights_m);
+                guard.poll();
+                return guard.newest().fault == wanted;
+            });
+        };
+        ::kill(guard.pid(), SIGSTOP);
+        CHECK(sent_until(Fault::silence));
+        CHECK(guard.newest().count[static_cast<std::size_t>(Fault::silence)] >= 1);
+        ::kill(guard.pid(), SIGCONT);
+        CHECK(sent_until(Fault::loop_silent));  // what had queued meanwhile is not new
+        CHECK(soon([&] { return wires.highest_mm() < 0.05; }));
+        guard.release();
+        CHECK(press_until(guard, [&](const ShapeReport&) { return wires.highest_mm() > 1.4; }));
+    }
+    Wires wires("framed");
+    GuardProcess guard(wires.rig, PALPA_GUARD);
+    driven(guard, wires);
+    ::kill(guard.pid(), SIGSTOP);
+    for (int i = 0; i < 100; ++i) guard.send(halfway(wires.rig)), guard_nap(0.003);
+    ::kill(guard.pid(), SIGCONT);
+    RigReport report;
+    CHECK(soon([&] {
+        guard.send(halfway(wires.rig));
+        guard.poll(report);
+        return report.fault == Fault::loop_silent && report.relaxed;
+    }));
+}
+
 TEST_CASE("guard: an arm that follows a force sensor rests while that sensor says nothing") {
     for (const ArmImpedance impedance : {ArmImpedance::high, ArmImpedance::low}) {
         SimulatorProcess arm(PALPA_ARM_SIMULATOR, {}), sensor(PALPA_NETFT_SIMULATOR, {});

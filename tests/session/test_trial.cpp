@@ -116,9 +116,9 @@ TEST_CASE("trial: found, pressed too lightly, never touched; marks with confiden
     CHECK(result.score.ppv == close_to(0.5));
     CHECK(result.area.at_least[1] > 0.0);
     CHECK(result.area.at_least[1] < 0.05);
-    REQUIRE(person.session.finished.size() == 1);
-    CHECK(person.session.finished[0]["tp"] == 1);
-    CHECK(person.session.finished[0]["nodules"][1]["finding"] == "pressed too lightly");
+    REQUIRE(person.session.ended.size() == 1);
+    CHECK(person.session.ended[0]["tp"] == 1);
+    CHECK(person.session.ended[0]["nodules"][1]["finding"] == "pressed too lightly");
 }
 
 TEST_CASE("trial: pressed well but not marked is told apart from pressed too lightly") {
@@ -251,7 +251,7 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
         CHECK(std::count(events.begin(), events.end(), '\n') ==
               4);  // header, start, mark, confidence: on the disk already
         person.act(Action::finish);
-        live = person.session.finished[0];
+        live = person.session.ended[0];
         CHECK(close_files({{"any", 1}}, person.session));
     }
     const std::string stem = "log/sub-03/beh/sub-03_task-palpation_run-01";
@@ -267,8 +267,8 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
     again.plan = std::make_shared<const Plan>(make_plan(again.scene));
     begin_trial({}, trace.info, TrialMode::test, again);
     for (const Sample& sample : trace.samples) take_sample(sample, again);
-    REQUIRE(again.finished.size() == 1);
-    CHECK(again.finished[0] == live);
+    REQUIRE(again.ended.size() == 1);
+    CHECK(again.ended[0] == live);
 }
 
 TEST_CASE("session: a trial that is broken off keeps its marks with their places, and counts as interrupted") {
@@ -289,6 +289,11 @@ TEST_CASE("session: a trial that is broken off keeps its marks with their places
         CHECK(std::stod(std::string(fields[21])) == close_to(40.0));
         note_event("device_gone", 1e9, person.session);
         CHECK(close_files({}, person.session));
+        for (int i = 0; i < 2; ++i) begin_trial({}, person.info, TrialMode::test, person.session);
+        const files::Json trials = trials_json(person.session);
+        REQUIRE(trials.size() == 2);  // that one and the last; nobody touched the one between them
+        CHECK(trials[0]["finished"] == false);
+        CHECK(trials[0]["marks"].size() == 2);
     }
     const std::string marks = read_text(stem + "_marks.tsv");
     CHECK(std::count(marks.begin(), marks.end(), '\n') == 3);
@@ -375,8 +380,8 @@ TEST_CASE("trial: the clock starts at the first touch and stands still in a paus
     CHECK(person.session.trial.finished);
     CHECK(clock() == close_to(stroked_s + 1.01 + 0.01 + 2.01));
     CHECK(clock_s(person.session.trial, 1e6) == clock());
-    CHECK(person.session.finished[0]["clock_s"].get<double>() == close_to(clock()));
-    CHECK(person.session.finished[0]["duration_s"].get<double>() > 40.0);
+    CHECK(person.session.ended[0]["clock_s"].get<double>() == close_to(clock()));
+    CHECK(person.session.ended[0]["duration_s"].get<double>() > 40.0);
 }
 
 TEST_CASE("trial: the path knows how deep a pen that stays was at each time, and until when it stayed") {

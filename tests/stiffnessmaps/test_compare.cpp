@@ -46,6 +46,10 @@ TEST_CASE("compare: bias, median, RMS and the greatest difference with its place
     CHECK(d.all.at_y_m == close_to(a.y_of(4)));
     CHECK(d.all.bias_N == close_to(0.25 + 3.0 / n).epsilon(1e-3));
     CHECK(d.depths.size() == kPaperDepths_m.size());
+    Map half = a;  // half of all places differ by 0.6 N
+    for (std::size_t i = 0; i < half.normal_N.size(); i += 2) half.normal_N[i] += 0.6f;
+    REQUIRE(half.n_x % 2 == 0);
+    CHECK(compare_maps(a, "a", half, "half").all.median_N == close_to(0.3).epsilon(1e-3));
 }
 
 TEST_CASE("compare: on the coarser grid, the common area and the common depths") {

@@ -38,6 +38,9 @@ TEST_CASE("check logs: answers that the protocol offers count once") {
     CHECK(text_of(answers_to_questions(&protocol, "01", good, notes)) ==
           "n/a hobby chess; a effort 7; a like yes, 'much'; ");
     CHECK(notes.empty());
+    const std::vector<Rating> kept = answers_to_questions(&protocol, "01", good, notes);
+    CHECK_FALSE(kept[1].chosen);  // of a scale
+    CHECK(kept[2].chosen);
     const std::vector<Rating> again{{"a", "effort", "7"}, {"a", "like", "no"}, {"a", "effort", "2"}};
     CHECK(text_of(answers_to_questions(&protocol, "01", again, notes)) == "a effort 2; a like no; ");
     REQUIRE(notes.size() == 1);

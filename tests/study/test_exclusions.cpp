@@ -6,6 +6,7 @@
 #include "study/read_logs.h"
 #include "study/report.h"
 #include "study/typed_trial.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -74,6 +75,25 @@ TEST_CASE("exclusions: a trial or a participant is left out and reported, and no
     CHECK(contains(report_markdown(report), "3 finished tests are left out by the experimenter's decision"));
     CHECK(contains(report_markdown(report), "| 02 | all | did not understand the task |"));
     CHECK(finished_trials(log, "02") == std::set<int>{1, 2});
+    CHECK(report.excluded_people == 1);
+    add_exclusion(log, {"01", 1, "fire again"});  // each of that person's tests by itself
+    const Report fewer = make_report(read_study(log), {});
+    CHECK(fewer.excluded_people == 2);
+    CHECK(fewer.participants + fewer.excluded_people == 3);
+}
+
+TEST_CASE("ratings: texts to choose from that look like numbers are counted, not averaged") {
+    Observations seen;
+    for (const char* value : {"1", "2", "2"}) {
+        seen.answers.push_back({"a", "how many", value, -1, true});
+        seen.answers.push_back({"a", "how hard", value, -1, false});
+    }
+    const Report report = make_report(seen, {});
+    REQUIRE(report.ratings.size() == 3);
+    CHECK(report.ratings[0].n == 1);
+    CHECK(report.ratings[1].value == "2");
+    CHECK_FALSE(report.ratings[1].spread);
+    CHECK(report.ratings[2].spread->mean == close_to(5.0 / 3.0));
 }
 
 TEST_CASE(

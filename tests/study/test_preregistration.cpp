@@ -35,7 +35,8 @@ TEST_CASE("preregistration: design, orders, primary test, stopping rule and hash
          {std::string("| SHA-256 of the protocol | " + protocol.sha256), std::string("| authors | A; B |"),
           std::string("sensitivity, conditions a - b"), std::string("two-sided t test"), std::string("map_sha256 abc"),
           std::string("| planned participants | 7 |"), std::string("| stopping rule | seven finished |"),
-          std::string("| 7 | all | 1 | a x 3, b x 3 |"), std::string("8 mm of its axis"), std::string(kHolmFamilies)}) {
+          std::string("| 7 | all | 1 | a x 3, b x 3 |"), std::string("as the experimenter types them in"),
+          std::string(kHolmFamilies)}) {
         CAPTURE(part);
         CHECK(contains(sheet, part));
     }
@@ -60,4 +61,22 @@ TEST_CASE("preregistration: staircases promise thresholds, and no share of right
     CHECK(contains(sheet, "| staircases | threshold and JND"));
     CHECK(contains(sheet, "`palpa study power` takes no staircases"));
     CHECK_FALSE(contains(sheet, "against one half"));
+}
+
+TEST_CASE("preregistration: power is promised only where it can be computed") {
+    for (const auto& [name, power] :
+         {std::pair{"effects", "`palpa study power`, with its output"}, std::pair{"effects", "8 mm of its axis"},
+          std::pair{"tactile", "takes no choices that are felt through a scene"}}) {
+        const Protocol protocol = read_protocol(std::string(PALPA_SOURCE_DIR "/assets/protocols/") + name + ".json");
+        CHECK(contains(preregistration_sheet(protocol, {0, "palpa 1", {}}), power));
+    }
+    Protocol hand = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/effects.json");
+    for (Condition& condition : hand.conditions) {
+        condition.modality = Modality::hand;
+        condition.scene.clear();
+    }
+    const std::string sheet = preregistration_sheet(hand, {0, "palpa 1", {}});
+    CHECK(contains(sheet, "takes no conditions by hand only"));
+    CHECK(contains(sheet, "as the experimenter types them in"));
+    CHECK_FALSE(contains(sheet, "8 mm of its axis"));
 }

@@ -22,6 +22,21 @@ TEST_CASE("STARD checklist: all 30 items and those of simulations stand there, f
     CHECK(contains(form, "| 13a | what those who did the index test knew of the reference | TO BE FILLED IN |"));
 }
 
+TEST_CASE("STARD checklist: it describes the trials that the study has") {
+    const Protocol softer = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
+    Report report;
+    report.forced_choices = 40;
+    const std::string choices = stard_checklist(report, &softer);
+    for (const char* of_marks : {"nodule", "a mark"}) CHECK_FALSE(contains(choices, of_marks));
+    CHECK(contains(choices, "none: one of both surfaces is chosen"));
+    CHECK(contains(choices, "choices: choices.tsv"));
+    const Protocol displays = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/four-displays.json");
+    const std::string form = stard_checklist({}, &displays);
+    CHECK(contains(form, "8 mm of its axis"));
+    CHECK(contains(form, "by hand: what the experimenter took for found: TO BE FILLED IN"));
+    CHECK(contains(form, "by hand: the experimenter, who judges and types"));
+}
+
 TEST_CASE("STARD checklist: the protocol answers what it states, and simulated people are called so") {
     const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/effects.json");
     Report report;

@@ -41,6 +41,32 @@ struct SmallLoop {
 
 }  // namespace
 
+TEST_CASE("loop: real drives are told what their wires say, and a command that one cannot take is refused") {
+    const auto wired = [](devices::Drive drive, CommandKind command) {
+        auto model = std::make_shared<DeviceModel>(*small_strip());
+        REQUIRE(model->device.wires);
+        for (devices::RigChannel& channel : model->device.wires->channels) channel.drive = drive;
+        TangiblePlan plan;
+        plan.model = model;
+        plan.loop.command = command;
+        return plan;
+    };
+    using devices::Drive;
+    TangiblePlan lengths = wired(Drive::length, CommandKind::force);
+    command_as_wired(false, lengths);
+    CHECK(lengths.loop.command == CommandKind::position);
+    CHECK_THROWS_WITH(command_as_wired(true, std::ref(lengths = wired(Drive::length, CommandKind::force))),
+                      doctest::Contains("left.drive: found length, expected force"));
+    for (const bool asked : {false, true}) {
+        TangiblePlan forces = wired(Drive::force, CommandKind::position);
+        CHECK_THROWS_WITH(command_as_wired(asked, forces),
+                          doctest::Contains("left.drive: found force, expected length"));
+        forces = wired(Drive::force, CommandKind::force);
+        command_as_wired(asked, forces);
+        CHECK(forces.loop.command == CommandKind::force);
+    }
+}
+
 TEST_CASE("tangible loop: a press on the exact plant renders the wanted force") {
     for (const double stiffness : {0.1, 0.2}) {
         const PressFigures figures = press_small(stiffness, small_plant());

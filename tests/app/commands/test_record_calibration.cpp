@@ -219,6 +219,7 @@ TEST_CASE("record: what cannot work is said at once, or after five seconds of si
     refused("--sensor typed --levels -", 2, "standard input is for the typed numbers");
     refused("--sensor typed --resume --levels /dev/null", 2, "the session to resume");
     refused("--sensor typed --level pressure_raw --levels /dev/null", 2, "--level-range");
+    refused("--sensor typed --full-contact-area-px2 100 --levels /dev/null", 2, "expected --level contact_area");
     const Called window =
         shell("env -u DISPLAY -u WAYLAND_DISPLAY " + kRecord + "-o " + session + " --sensor netft:127.0.0.1:9");
     CHECK(window.status == 1);

@@ -98,6 +98,7 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     CHECK(contains(read_text(folder / "report/report.md"), "0.5 is not chance"));
     refused(marks + " --rating-scale 1 2", "a rating from 1 to 2, the scale");
     refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
+    refused("analyse " PALPA_SOURCE_DIR "/assets/counts/paper.tsv --rating-scale 1 5", "which holds no ratings");
 }
 
 TEST_CASE("command study analyse: confidence outside 1 to 5 in the marks of a log is refused with file and line") {

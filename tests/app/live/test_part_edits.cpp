@@ -116,6 +116,39 @@ TEST_CASE("part edits: a second session writes a file of its own, and the first 
     CHECK(operations_of(home.folder / "bar.json") == 1);
 }
 
+TEST_CASE("part edits: two designs of one file are changed apart, and undone apart") {
+    const Home home;
+    std::ofstream(home.folder / "scene.json")
+        << R"({"name": "twins", "tissue": {"part": {"designs": ["bar.json", "bar.json"], "method": "timoshenko"}}})";
+    {
+        Desk desk(home.scene());
+        PartWish cut;
+        cut.kind = PartWish::Kind::edit;
+        cut.radius_m = 1e-3;
+        for (const std::size_t design : {1u, 0u}) {
+            cut.design = design;
+            cut.path_m = {{0.02 + 0.01 * static_cast<double>(design), 0.01}};
+            change_part(cut, desk.window, desk.gui, desk.app);
+        }
+        const auto& designs = scene::part_options(desk.app.session.scene.tissue)->designs;
+        CHECK(designs.at(1) == home.edited());
+        CHECK(designs.at(0) == home.edited("-2"));
+        for (const std::string copy : {"", "-2"}) CHECK(operations_of(home.edited(copy)) == 2);
+        wish(PartWish::Kind::undo, desk);
+        CHECK(designs.at(0) == home.folder / "bar.json");
+        CHECK(operations_of(home.edited()) == 2);  // the other's change stays
+        wish(PartWish::Kind::redo, desk);
+        CHECK(operations_of(home.edited("-2")) == 2);
+        CHECK(desk.app.notices.note.empty());
+    }
+    Desk desk(home.scene());
+    wish(PartWish::Kind::earlier, desk);  // the last one, in one of both: a change of it stays in it
+    const auto& designs = scene::part_options(desk.app.session.scene.tissue)->designs;
+    CHECK(designs.at(0) == home.edited("-2"));
+    CHECK(designs.at(1) == home.folder / "bar.json");
+    CHECK_FALSE(desk.app.view.part.earlier);
+}
+
 TEST_CASE("part edits: an undone first change is out of its file too, and is not offered again") {
     const Home home;
     {

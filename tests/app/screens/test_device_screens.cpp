@@ -255,6 +255,8 @@ TEST_CASE("screens: a soft device fits at the sizes of desks and tablets: runnin
     many.shape->node_m[10] = {NAN, NAN, NAN};
     TangibleShown led = running;
     led.device_leads = true;
+    TangibleShown absent = failed;
+    absent.device_leads = true;
     Screens screen{{}, WatchingTangible{}};
     Screens trial;
     constexpr double kTablet_px_per_mm = 11.8;
@@ -273,6 +275,7 @@ TEST_CASE("screens: a soft device fits at the sizes of desks and tablets: runnin
         draw_it(screen, many, "tangible-many");
         draw_it(trial, stopped, "trial-tangible-stopped");
         draw_it(trial, led, "trial-tangible-leads");
+        draw_it(trial, absent, "trial-tangible-absent");
     }
 }
 

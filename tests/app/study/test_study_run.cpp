@@ -329,18 +329,30 @@ TEST_CASE("study run: a trial waits for its device, and one that the device left
     CHECK(run.progress.finished == std::set<int>{due});
 }
 
-TEST_CASE("study run: a number that is asked for is one number in its range, or left open") {
+TEST_CASE("study run: a number that is asked for is one whole number in its range, or left open") {
     Item item;
     item.from = 0;
     item.to = 100;
-    for (const char* good : {"", "0", "33", "33.5", "100"}) CHECK(is_answer(item, good));
-    for (const char* bad : {"30-40", "30-4*", "3+4", "-1", "101", ".", "1 2", "nan"}) {
+    for (const char* good : {"", "0", "33", "100"}) CHECK(is_answer(item, good));
+    for (const char* bad : {"33.5", "30-40", "30-4*", "3+4", "-1", "101", ".", "1 2", "nan"}) {
         CAPTURE(bad);
         CHECK_FALSE(is_answer(item, bad));
     }
     item.from.reset();
     item.to.reset();
     CHECK(is_answer(item, "30-40"));  // a text
+}
+
+TEST_CASE("study run: all that a participant reads is among the texts whose letters are checked and drawn") {
+    Protocol protocol;
+    Item scale;
+    scale.text = "a";
+    scale.low = "b";
+    scale.high = "c";
+    protocol.demographics.push_back(scale);
+    scale.choices = {"d"};
+    protocol.ratings.push_back(scale);
+    CHECK(letters_of(protocol) == "abcabcd");
 }
 
 TEST_CASE("study run: forced choices without a scene are presented by the experimenter, who is told what") {
