@@ -33,6 +33,11 @@ bool any_pairs(const Protocol& protocol, bool pairs) {
     return false;
 }
 
+bool any_scene(const Protocol& protocol) {
+    return std::any_of(protocol.conditions.begin(), protocol.conditions.end(),
+                       [](const Condition& one) { return !one.scene.empty(); });
+}
+
 std::string study_part(const Protocol& protocol, const SheetOptions& options) {
     const DatasetAbout& about = protocol.about;
     return "\n## Study\n\n| | |\n| --- | --- |\n" +
@@ -89,14 +94,17 @@ std::string design_part(const Protocol& protocol) {
         sheet_row("order of conditions, of trials",
                   std::string(name_of(protocol.order)) + ", " + name_of(protocol.trial_order)) +
         sheet_row("time limit of a test", sheet_limit(protocol.time_limit_s)) +
-        sheet_row("practice before each condition", std::to_string(protocol.practice_trials) + " trials, time limit " +
-                                                        sheet_limit(protocol.practice_limit_s)) +
+        sheet_row("practice before each condition",
+                  protocol.practice_trials == 0 ? "none"
+                                                : std::to_string(protocol.practice_trials) + " trials, time limit " +
+                                                      sheet_limit(protocol.practice_limit_s)) +
         sheet_row("break after",
                   protocol.break_every_trials > 0 ? std::to_string(protocol.break_every_trials) + " tests" : "no test");
-    if (any_pairs(protocol, false)) {
+    if (any_scene(protocol))
         out += sheet_row("views", std::string(protocol.turn_maps ? "maps in four quarter turns" : "maps never turned") +
-                                      (protocol.flip_maps ? ", also mirrored" : "")) +
-               sheet_row("number of nodules told", protocol.count_told ? "yes" : "no");
+                                      (protocol.flip_maps ? ", also mirrored" : ""));
+    if (any_pairs(protocol, false)) {
+        out += sheet_row("number of nodules told", protocol.count_told ? "yes" : "no");
     }
     out += sheet_row(
         "blinding",

@@ -36,15 +36,17 @@ void check_tasks(const files::JsonReader& json, const Protocol& protocol) {
 }
 
 void check_find_keys(const files::JsonReader& json, const Protocol& protocol) {
+    const auto has_scene = [](const Condition& one) { return !one.scene.empty(); };
+    const bool any_scene = std::any_of(protocol.conditions.begin(), protocol.conditions.end(), has_scene);
+    for (const char* key : {"turn_maps", "flip_maps"}) {
+        if (!any_scene && json.has(key)) json.fail(key, "a value", "none: no condition has a scene");
+    }
     if (any_task(protocol, TaskKind::find)) return;
     if (json.has("repeats"))
         json.fail("repeats", "a value", "none: choice.repeats and staircase.trials tell how many pairs there are");
     if (json.has("nodule_count_told")) json.fail("nodule_count_told", "a value", "none: nothing is to be found");
-    const auto has_scene = [](const Condition& one) { return !one.scene.empty(); };
-    if (std::any_of(protocol.conditions.begin(), protocol.conditions.end(), has_scene)) return;
-    for (const char* key : {"turn_maps", "flip_maps", "time_limit_s"}) {
-        if (json.has(key)) json.fail(key, "a value", "none: no condition has a scene");
-    }
+    if (any_scene) return;
+    if (json.has("time_limit_s")) json.fail("time_limit_s", "a value", "none: no condition has a scene");
     if (protocol.practice_limit_s > 0.0)
         json.fail("practice.time_limit_s", "a value", "none: no condition has a scene");
 }

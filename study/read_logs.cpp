@@ -47,7 +47,8 @@ struct Study {
     std::unordered_map<std::size_t, std::string> seen;  // file of events by the hash of its text
     NodulesOfConditions nodules_seen;
     FoundTrials found;
-    NameIndex comparisons;  // of the observations
+    NameIndex comparisons;        // of the observations
+    std::set<std::string> typed;  // conditions with answers that were typed in
 
     bool excludes(const std::string& code, int trial) const {
         return left_out.count(code) > 0 || left_out_trials.count({code, trial}) > 0;
@@ -228,6 +229,7 @@ class Subject {
             ++out_.interrupted_trials;
             return;
         }
+        if (settings.typed) study_.typed.insert(run.condition);
         if (!settings.there) {
             out_.notes.push_back(beside(run.events, "_settings.json").string() +
                                  ": is not there; nodules that were missed cannot be told apart");
@@ -387,6 +389,7 @@ Observations read_study(const fs::path& directory) {
     } else if (fs::exists(directory / "protocol.json")) {
         follow_protocol(read_protocol(directory / "protocol.json"), out);
     }
+    for (ConditionDisplay& one : out.displays) one.typed_in = one.typed_in || study.typed.count(one.condition) > 0;
     return out;
 }
 

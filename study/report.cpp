@@ -68,9 +68,14 @@ void count_people_without(const Observations& seen, Report& report) {
     };
     std::set<std::string> tested, excluded, replaced;
     for (const int person : people_with_tests(seen)) tested.insert(seen.participants[static_cast<std::size_t>(person)]);
-    for (const Exclusion& one : seen.exclusions)  // somebody each of whose tests is left out, too
-        if (has_logs(one.participant) && (!one.trial || tested.count(one.participant) == 0))
-            excluded.insert(one.participant);
+    const auto is_replaced = [&](const std::string& code) {
+        return std::any_of(seen.replacements.begin(), seen.replacements.end(),
+                           [&](const Replacement& one) { return one.participant == code; });
+    };
+    for (const Exclusion& one : seen.exclusions) {  // somebody each of whose tests is left out, too
+        const bool last_test = tested.count(one.participant) == 0 && !is_replaced(one.participant);
+        if (has_logs(one.participant) && (!one.trial || last_test)) excluded.insert(one.participant);
+    }
     for (const Replacement& one : seen.replacements)
         if (has_logs(one.participant) && excluded.count(one.participant) == 0) replaced.insert(one.participant);
     report.withdrawn_people = seen.withdrawn_people;

@@ -1,5 +1,7 @@
 #include "study/stard.h"
 
+#include <algorithm>
+
 #include "files/text.h"
 #include "study/table_text.h"
 
@@ -70,7 +72,9 @@ std::string index_tests(const Protocol* protocol) {
         out += (out.empty() ? "" : "; ") + one.id + ": " + name_of(one.modality) +
                (one.scene.empty() ? "" : ", scene " + one.scene) + (one.device == kNone ? "" : ", " + one.device);
     }
-    return "palpation under " + out + ". Settings of every trial are in the logs";
+    const bool any_scene = std::any_of(protocol->conditions.begin(), protocol->conditions.end(),
+                                       [](const Condition& one) { return !one.scene.empty(); });
+    return "palpation under " + out + (any_scene ? ". Settings of every trial with a scene are in the logs" : "");
 }
 
 std::string took_part(const Report& report) {
@@ -116,10 +120,15 @@ std::string stard_precision(const Report& report) {
                share_text(ci.low) + " to " + share_text(ci.high) + ", " +
                (one.se->bootstrap ? "bootstrap over participants" : std::string("Wilson, ") + wilson_is(*one.se)) + ")";
     }
-    if (report.forced_choices > 0) out += std::string(out.empty() ? "" : "; ") + "choices: choices.tsv";
-    return out.empty() ? ""
-                       : out + ". Intervals at " + files::short_number(100.0 * report.options.bootstrap.level) +
-                             " %; comparisons in pairs.tsv";
+    const auto in_table = [&](bool there, const char* text) {
+        if (there) out += (out.empty() ? "" : "; ") + std::string(text);
+    };
+    in_table(!report.choices.empty(), "choices: choices.tsv");
+    in_table(!report.staircases.empty(), "staircases: staircases.tsv");
+    if (out.empty()) return out;
+    out += ". Intervals at " + files::short_number(100.0 * report.options.bootstrap.level) + " %";
+    if (!report.pairs.empty()) return out + "; comparisons in pairs.tsv";
+    return report.choice_pairs.empty() ? out : out + "; comparisons in choice_pairs.tsv";
 }
 
 std::string stard_sample(const Report& report, const Protocol* protocol) {
@@ -190,8 +199,9 @@ void stard_results(const Report& report, StardForm& form) {
     form.item("20", "who they were",
               "participants.tsv, and ratings.tsv where questions were asked; summary: " + kToFillIn);
     form.item("21a", "how severe the target condition was",
-              only_choices(report) ? "choices.tsv names what was compared; what else the samples were: " + kToFillIn
-                                   : "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
+              only_choices(report)
+                  ? "the levels that were compared are in the protocol; what else the samples were: " + kToFillIn
+                  : "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
     form.item("21b", "what else was there in those without it");
     form.item("22", "time and events between test and reference", "none: the reference is part of the tissue");
     form.item("23", "cross table of test and reference", stard_cross(report));

@@ -34,6 +34,7 @@ struct AnalyseOptions {
     std::string output;
     study::ReportOptions report;
     std::vector<double> scale;  // of ratings: lowest and highest; empty: all numbers
+    bool lapse = false;         // its greatest probability was given
     bool json = false;
 };
 
@@ -158,6 +159,9 @@ void analyse(const AnalyseOptions& options) {
         refuse_folder_of_logs(options.output);
     }
     const study::Observations seen = read_observations(options);
+    if (options.lapse && seen.stiffer.empty())
+        throw files::bad_input("--greatest-lapse", "", options.input + ", which has no psychometric functions",
+                               "answers to pairs of two stiffnesses");
     const study::Report report = study::make_report(seen, options.report);
     if (!options.output.empty()) check_results(options);
     if (!options.output.empty()) write_report(report, seen, protocol_of(options.input), options.output);
@@ -196,7 +200,10 @@ void add_study_analyse(CLI::App& study) {
                      "greatest probability of an answer by mistake in psychometric functions; 0: none (default 0.05)")
         ->check(CLI::Range(0.0, 0.2));
     command->add_flag("--json", options->json, "print one JSON object on standard output");
-    command->callback([options] { analyse(*options); });
+    command->callback([command, options] {
+        options->lapse = command->count("--greatest-lapse") > 0;
+        analyse(*options);
+    });
 }
 
 }  // namespace palpa::app

@@ -67,10 +67,11 @@ void add_study_observers(CLI::App& study) {
         ->check(CLI::Range(20, 100000));
     command->add_option("--experiments", observer.repeats, "number of simulated experiments (default 1000)")
         ->check(CLI::Range(1, 1000000));
-    command
-        ->add_option("--people", options->people.n,
-                     "people in each experiment, whose intervals are by bootstrap; 0: single observers (default 0)")
-        ->check(CLI::Range(0, 10000));
+    CLI::Option* people =
+        command
+            ->add_option("--people", options->people.n,
+                         "people in each experiment, whose intervals are by bootstrap; 0: single observers (default 0)")
+            ->check(CLI::Range(0, 10000));
     command->add_option("--pse", observer.truth.pse, "point of subjective equality, ln(second/first) (default 0.05)")
         ->check(CLI::Range(-1.0, 1.0));
     command->add_option("--sd", observer.truth.sd, "standard deviation of the noise (default 0.257)")
@@ -79,16 +80,19 @@ void add_study_observers(CLI::App& study) {
         ->check(CLI::Range(0.0, 0.2));
     command
         ->add_option("--pse-spread", options->people.pse_spread, "standard deviation of PSE over people (default 0.1)")
+        ->needs(people)
         ->check(CLI::Range(0.0, 1.0));
     command
         ->add_option("--sd-spread", options->people.log_sd_spread,
                      "standard deviation of ln sd over people (default 0.3)")
+        ->needs(people)
         ->check(CLI::Range(0.0, 1.0));
     command->add_option("--greatest-lapse", observer.fit.greatest_lapse, "of the fit (default 0.05)")
         ->check(CLI::Range(0.0, 0.2));
     command->add_option("--level", observer.fit.level, "confidence level (default 0.95)")
         ->check(CLI::Range(0.5, 0.9999));
-    command->add_option("--resamples", options->resamples, "of each bootstrap (default 500)")
+    command->add_option("--resamples", options->resamples, "of each bootstrap over people (default 500)")
+        ->needs(people)
         ->check(CLI::Range(100, 100000));
     command->add_option("--seed", observer.seed, "seed of all draws (default 1)");
     command->add_flag("--json", options->json, "print one JSON object on standard output");

@@ -164,7 +164,7 @@ void turn_tissue(platform::Window& window, App& app);
 // Turns the tissue if the person has seen where the nodules are, so that the next test has them somewhere else.
 void turn_if_shown(platform::Window& window, App& app);
 // True if the present trial has marks that are not scored yet, or the study's form answers that are not logged yet.
-bool not_touched(const App& app);  // touches of this trial are those on the screen, and there was none
+bool not_touched(const App& app);  // neither the screen in this trial nor, where it leads, the device
 bool work_at_stake(const App& app);
 // Takes a change of the window's size, or of the hand's side, as a sample: a replay must map positions in the same way. A
 // trial that is over takes no samples any more, but what it reveals stays in the window.

@@ -249,7 +249,10 @@ void turn_if_shown(platform::Window& window, App& app) {
     if (may_show_maps(app.session.trial)) turn_tissue(window, app);
 }
 
-bool not_touched(const App& app) { return !felt_elsewhere(app) && !app.session.trial.touched_s; }
+bool not_touched(const App& app) {
+    const bool simulated = felt_elsewhere(app) && app.options.simulate_devices;  // nobody can press on it
+    return !simulated && !app.session.trial.touched_s;
+}
 
 bool work_at_stake(const App& app) {
     const StudyRun* study = study_of(app.doing);

@@ -51,7 +51,7 @@ const palpaStudies = (() => {
 
     const ask = async (address) => {
         const answer = await fetch(address, {headers: palpaTrials.credentials(), cache: 'no-cache', signal: AbortSignal.timeout(kWait_ms)});
-        if (!answer.ok) throw new Error(palpaFilled(palpaWords.answered, answer.status, address));
+        if (!answer.ok) throw Object.assign(new Error(palpaFilled(palpaWords.answered, answer.status, address)), {status: answer.status});
         return answer;
     };
     const askFile = async (path) => (await ask('files/' + path.split('/').map(encodeURIComponent).join('/'))).arrayBuffer();
@@ -80,7 +80,9 @@ const palpaStudies = (() => {
             // no storage: told elsewhere
         }
         const name = palpaTrials.protocol();
-        if (name) await fetchStudy(name).catch(() => {}); // away, or not paired: what is kept, or of the app
+        if (name) await fetchStudy(name).catch(({status}) => { // what is kept, or of the app
+            if (status === 401) palpaTrials.tell(palpaWords.studyUnpaired);
+        });
     };
 
     // The desk's files of the study that was asked for take the place of the app's.

@@ -7,6 +7,7 @@
 const palpaTrials = (() => {
     const kStores = {trials: 'name', study: 'path', parts: ['name', 'path', 'offset'], files: 'path', designs: 'path'}; // and their keys
     const kAgain_ms = 15000;
+    const kAnswer_ms = 500; // of another tab
     const kWait_ms = 3000;   // for another tab, and for a desk at the start
     const kPair_ms = 10000;
     const kSend_ms = 120000; // for an upload
@@ -137,11 +138,26 @@ const palpaTrials = (() => {
 
     // Two pages would give the same names. The lock goes with the page that holds it.
     const isAlone = () => new Promise((resolve) => {
-        if (!navigator.locks) return resolve(true);
+        if (!navigator.locks) return resolve(noOtherAnswers());
         navigator.locks.request('palpa', {signal: AbortSignal.timeout(kWait_ms)}, () => {
             resolve(true);
             return new Promise(() => {});
-        }).catch(() => resolve(false));
+        }).catch((error) => resolve(error.name !== 'TimeoutError')); // where storage is refused, locks are too
+    });
+
+    // Only https and localhost have locks. Elsewhere the pages ask each other.
+    const noOtherAnswers = () => new Promise((resolve) => {
+        const channel = new BroadcastChannel('palpa');
+        let alone = false;
+        const settled = setTimeout(() => { alone = true; resolve(true); }, kAnswer_ms);
+        channel.onmessage = ({data}) => {
+            if (data === 'who' && alone) channel.postMessage('here');
+            if (data !== 'here' || alone) return;
+            clearTimeout(settled);
+            channel.close();
+            resolve(false);
+        };
+        channel.postMessage('who');
     });
 
     const start = async (dialog) => {
@@ -166,7 +182,7 @@ const palpaTrials = (() => {
         await askDesk();
         await pairByAddress();
         window.addEventListener('hashchange', pairByAddress);
-        const again = async () => { saveAgain(); if (!maySend() && toSend().length > 0) await askDesk(); send(); };
+        const again = async () => { saveAgain(); if (isPaired() || toSend().length > 0) await askDesk(); send(); changed(); };
         setInterval(again, kAgain_ms);
         window.addEventListener('online', again);
         window.addEventListener('beforeunload', (event) => { if (inDanger() > 0) event.preventDefault(); });
@@ -182,9 +198,10 @@ const palpaTrials = (() => {
     // Some desks take logs from everybody, some from nobody. One that does not answer delays the start no longer.
     const askDesk = async () => {
         try {
-            const answer = await fetch('api/health', {signal: AbortSignal.timeout(kWait_ms)});
+            const answer = await fetch('api/health', {headers: credentials(), signal: AbortSignal.timeout(kWait_ms)});
             if (!answer.ok || !(answer.headers.get('Content-Type') || '').includes('json')) return;
-            const {pairing, collects} = await answer.json();
+            const {pairing, collects, paired} = await answer.json();
+            if (paired === false && recall('palpa-token')) endPairing();
             asksCode = pairing !== false;
             takesNone = collects === false;
             open_to_all = !asksCode && collects === true;
@@ -193,6 +210,10 @@ const palpaTrials = (() => {
         }
     };
     const credentials = () => recall('palpa-token') ? {Authorization: `Bearer ${recall('palpa-token')}`} : {};
+    const endPairing = () => { // after half a day, or the desk was started anew
+        remember('palpa-token', null);
+        lastWord = palpaWords.pairAgain;
+    };
     const isPaired = () => asksCode && recall('palpa-token') !== '';
     const maySend = () => !takesNone && (open_to_all || isPaired());
 
@@ -212,7 +233,7 @@ const palpaTrials = (() => {
 
     // Space may have been made meanwhile.
     const saveAgain = async () => {
-        for (const {trial, files} of [...unsaved.values()]) await save(trial, files, false).catch(() => {});
+        for (const {trial, files, isNew} of [...unsaved.values()]) await save(trial, files, isNew).catch(() => {});
         changed();
     };
 
@@ -224,7 +245,7 @@ const palpaTrials = (() => {
         const broken = how === 'broken-off';
         const endedEarly = how === 'ended-early';
         const finished = endedEarly || how === 'finished';
-        const isNew = !broken && !current.has(name);
+        const isNew = !broken && (!current.has(name) || !!unsaved.get(name)?.isNew);
         if (!broken) current.add(name);
         restoring.delete(name);
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
@@ -233,7 +254,7 @@ const palpaTrials = (() => {
         try {
             await save(trial, files, isNew);
         } catch (error) {
-            unsaved.set(name, {trial, files});
+            unsaved.set(name, {trial, files, isNew});
             const full = error && error.name === 'QuotaExceededError';
             tellOf(name, palpaFilled(palpaWords.notStored, name, full ? palpaWords.storageFull : error.message));
         } finally {
@@ -283,8 +304,7 @@ const palpaTrials = (() => {
             signal: AbortSignal.timeout(kSend_ms),
         });
         if (answer.status === 401 || answer.status === 403) {
-            remember('palpa-token', null);
-            lastWord = palpaWords.pairAgain;
+            endPairing();
             return false;
         }
         const confirmed = answer.ok ? (await answer.json()).sha256 : '';

@@ -20,9 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Two conditions by hand in a Latin square, so that every second person begins with the same one.
-Protocol study_by_hand(const fs::path& log) {
+Protocol study_by_hand(const fs::path& log, const std::string& b = R"("modality": "hand", "nodules": ["A"])") {
     write_text_atomically(log.parent_path() / "p.json", R"({"name": "n", "version": "1", "seed": 3, "order": "latin",
-        "conditions": [{"id": "a", "modality": "hand", "nodules": ["A"]}, {"id": "b", "modality": "hand", "nodules": ["A"]}]})");
+        "conditions": [{"id": "a", "modality": "hand", "nodules": ["A"]}, {"id": "b", )" +
+                                                            b + "}]}");
     const Protocol protocol = read_protocol(log.parent_path() / "p.json");
     open_study(log, protocol, {});
     return protocol;
@@ -80,6 +81,17 @@ TEST_CASE("exclusions: a trial or a participant is left out and reported, and no
     const Report fewer = make_report(read_study(log), {});
     CHECK(fewer.excluded_people == 2);
     CHECK(fewer.participants + fewer.excluded_people == 3);
+}
+
+TEST_CASE("displays: answers that were typed in are called so, whatever the scene of their condition") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log, R"("modality": "tangible", "scene": "s.json")");
+    take_part(log, protocol, "01", 2);
+    const Observations seen = read_study(log);
+    REQUIRE(seen.displays.size() == 2);
+    CHECK(seen.displays[1].condition == "b");
+    CHECK(seen.displays[1].typed_in);
 }
 
 TEST_CASE("ratings: texts to choose from that look like numbers are counted, not averaged") {
@@ -190,6 +202,19 @@ TEST_CASE("replacements: who was to take a place and never came is replaced by a
     CHECK(contains(message_of([&] { read_replacements(log); }),
                    "line 5, participant: found '02', expected each participant "
                    "once: 22 has this place already"));
+}
+
+TEST_CASE("replacements: a replaced participant with a trial that is left out counts as replaced") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    take_part(log, protocol, "01", 2);
+    take_part(log, protocol, "02", 1);
+    add_exclusion(log, {"02", 1, "fire alarm"});
+    add_replacement(log, {"02", "21", "left"});
+    const Report report = make_report(read_study(log), {});
+    CHECK(report.excluded_people == 0);
+    CHECK(report.replaced_people == 1);
 }
 
 TEST_CASE("replacements: only a place that somebody was to take can be freed") {

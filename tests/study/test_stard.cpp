@@ -26,8 +26,10 @@ TEST_CASE("STARD checklist: it describes the trials that the study has") {
     const Protocol softer = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
     Report report;
     report.forced_choices = 40;
+    report.choices.emplace_back();
     const std::string choices = stard_checklist(report, &softer);
-    for (const char* of_marks : {"nodule", "a mark"}) CHECK_FALSE(contains(choices, of_marks));
+    for (const char* other : {"nodule", "a mark", "pairs.tsv", "Settings of every trial"})
+        CHECK_FALSE(contains(choices, other));
     CHECK(contains(choices, "none: one of both surfaces is chosen"));
     CHECK(contains(choices, "choices: choices.tsv"));
     const Protocol displays = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/four-displays.json");

@@ -192,6 +192,31 @@ test('a second tab does not start beside the first', () => withPage({quiet: true
     await second.waitForFunction(() => document.getElementById('message').textContent.includes('another tab'), null, {timeout: 20000});
 }));
 
+test('a second tab does not start beside the first without locks either, which plain http from another host has not', () =>
+    withPage({quiet: true}, async (browser, desk) => {
+        await browser.context.addInitScript(() => Object.defineProperty(navigator, 'locks', {value: undefined}));
+        const pages = [];
+        for (let i = 0; i < 2; ++i) {
+            pages.push(await browser.context.newPage());
+            await pages[i].goto(desk.url);
+            if (i === 0) await started(pages[0]);
+        }
+        await pages[1].waitForFunction(() => document.getElementById('message').textContent.includes('another tab'), null, {timeout: 20000});
+    }));
+
+test('a browser that refuses locks and storage is no second tab: the app runs, and says that nothing is stored', () =>
+    withPage({quiet: true}, async (browser, desk) => {
+        await browser.context.addInitScript(() => {
+            const refuse = () => { throw new DOMException('refused', 'SecurityError'); };
+            Object.defineProperty(navigator, 'locks', {value: {request: async () => refuse()}});
+            IDBFactory.prototype.open = refuse;
+        });
+        const page = await browser.context.newPage();
+        await page.goto(desk.url);
+        await started(page);
+        await page.waitForFunction(() => document.body.textContent.includes('refused'), null, {timeout: 20000});
+    }));
+
 test('the real desk: a trial goes from the page into a folder of logs', {skip: process.env.PALPA ? false : 'no palpa of the desktop'}, async () => {
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'palpa-desk-'));
     const collected = path.join(folder, 'collected');

@@ -99,6 +99,8 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     refused(marks + " --rating-scale 1 2", "a rating from 1 to 2, the scale");
     refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
     refused("analyse " PALPA_SOURCE_DIR "/assets/counts/paper.tsv --rating-scale 1 5", "which holds no ratings");
+    refused("analyse " PALPA_SOURCE_DIR "/assets/counts/paper.tsv --greatest-lapse 0.1", "no psychometric functions");
+    refused("observers --experiments 2 --pse-spread 0.5", "--people");
 }
 
 TEST_CASE("command study analyse: confidence outside 1 to 5 in the marks of a log is refused with file and line") {

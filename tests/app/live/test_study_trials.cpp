@@ -58,6 +58,20 @@ struct StudyDesk : Desk {
 
 }  // namespace
 
+TEST_CASE("trials: what nobody has touched is not touched where a device leads either, but for a simulated one") {
+    Desk desk("");
+    CHECK(not_touched(desk.app));
+    desk.app.tactile.shown.emplace();
+    desk.app.tactile.shown->arm_leads = true;
+    CHECK(not_touched(desk.app));
+    desk.app.options.simulate_devices = true;
+    CHECK_FALSE(not_touched(desk.app));
+    desk.app.options.simulate_devices = false;
+    desk.app.session.trial.began = true;
+    session::take_device_press({{0.0, 0.0}, 1e-3, 0.5}, 1.0, desk.app.session);
+    CHECK_FALSE(not_touched(desk.app));
+}
+
 TEST_CASE("live: closing in the middle of a pair asks first, and Enter says that the surface is done") {
     const TemporaryFolder folder;
     StudyDesk desk(folder, R"("choice": {"reference_kPa": 10, "comparisons_kPa": [20], "repeats": 2})");
