@@ -214,7 +214,7 @@ test('a browser that refuses locks and storage is no second tab: the app runs, a
         const page = await browser.context.newPage();
         await page.goto(desk.url);
         await started(page);
-        await page.waitForFunction(() => document.body.textContent.includes('refused'), null, {timeout: 20000});
+        await until('said', async () => (await report(page)).problems.some((text) => text.includes('cannot store trials (refused)')));
     }));
 
 test('the real desk: a trial goes from the page into a folder of logs', {skip: process.env.PALPA ? false : 'no palpa of the desktop'}, async () => {
