@@ -37,7 +37,8 @@ export async function openDesk() {
         const url = new URL(request.url, 'http://desk');
         if (!desk.reachable) return response.destroy();
         if (desk.silent && url.pathname.startsWith('/api/')) return;
-        if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: desk.pairing, collects: desk.collects});
+        if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: desk.pairing, collects: desk.collects, paired: request.headers.authorization === `Bearer ${desk.token}`});
+        if (url.pathname === '/api/files' && request.headers.authorization !== `Bearer ${desk.token}`) return answer(response, 401, {error: 'token'});
         if (url.pathname === '/api/pair') {
             const {code} = JSON.parse(await body(request));
             if (desk.locked_s > 0) {

@@ -78,6 +78,22 @@ test('paired: trials go to the desk; one with another hash is kept and sent agai
     await until('the second, by itself', () => desk.logs.size === 2);
 }));
 
+test('a pairing that has ended is told, the code can be typed again, and a study of the app is not taken for the desk\'s', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    await pairByDialog(page, desk.code);
+    await page.reload();
+    await started(page);
+    await page.evaluate(() => palpaTrials.open());
+    assert.equal(await page.isVisible('#code'), false);
+    desk.token = 'of-another-desk';
+    await page.goto(`${desk.url}?protocol=effects&participant=1`);
+    await started(page);
+    await until('told', async () => (await report(page)).problems.some((text) => text.includes('is not paired with the desk')));
+    await page.evaluate(() => palpaTrials.open());
+    assert.ok(await page.isVisible('#code'));
+    assert.match(await page.textContent('#trials-state'), /Pair it again/);
+}));
+
 test('the desk is gone: trials wait, also over a restart without a network, and arrive when it is back', () => withPage({quiet: true}, async (browser, desk) => {
     const {page} = browser;
     await page.evaluate(() => navigator.serviceWorker.ready);
