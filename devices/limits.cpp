@@ -62,17 +62,17 @@ std::string_view text(Fault fault) {
         case Fault::not_a_number:
             return "a command was not a number";
         case Fault::silence:
-            return "nothing comes from the device";
+            return "nothing comes from a device";
         case Fault::out_of_range:
             return "the arm reports a depth outside of its range";
         case Fault::too_fast:
             return "the arm moves too fast";
         case Fault::board_error:
-            return "a board of the pins reports errors";
+            return "a motor board reports errors";
         case Fault::timeout_missing:
-            return "a board of the pins has no serial timeout";
+            return "a motor board has no serial timeout";
         case Fault::crc_missing:
-            return "a board of the pins does not check CRCs";
+            return "a motor board does not check CRCs";
         case Fault::loop_silent:
             return "nothing comes from the loop";
         case Fault::parent_gone:

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "devices/force_sensor.h"
@@ -44,16 +45,20 @@ bool ask_patiently(const MaestroAddress& to, PinLine& line, std::uint16_t& error
     return false;
 }
 
-// A board that checks CRCs drops the question and has the error; one that does not, answers it.
-bool refuses_wrong_crc(const MaestroAddress& to, PinLine& line) {
+// A board that checks CRCs drops the question and has the error; one that does not, answers it. Nothing if neither was seen
+// in a few questions, as on a line that loses or changes bytes.
+std::optional<bool> refuses_wrong_crc(const MaestroAddress& to, PinLine& line) {
     MaestroPacket wrong = encode_get_errors(to);
     wrong.bytes[wrong.size - 1] ^= 0x55;
-    drain(line);
-    await(MaestroReply::errors, line.parser);
-    std::uint16_t errors = 0;
-    if (!write_line(wrong.view(), line) || take_reply(kReply_s, line, errors)) return false;
-    await(MaestroReply::none, line.parser);
-    return ask_patiently(to, line, errors) && (errors & kMaestroCrc) != 0;
+    for (int i = 0; i < 5 && !line.gone; ++i) {
+        drain(line);
+        await(MaestroReply::errors, line.parser);
+        std::uint16_t errors = 0;
+        if (write_line(wrong.view(), line) && take_reply(kReply_s, line, errors)) return false;
+        await(MaestroReply::none, line.parser);
+        if (ask_patiently(to, line, errors) && (errors & kMaestroCrc) != 0) return true;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -103,7 +108,11 @@ void prove_boards(const PinDevice& device, PinLine& line, std::span<BoardHealth>
     }
     for (std::size_t i = 0; i < boards.size(); ++i) {
         const MaestroAddress& to = device.boards[i].address;
-        boards[i].crc = boards[i].answers && to.crc && refuses_wrong_crc(to, line);
+        boards[i].crc = false;
+        if (!boards[i].answers || !to.crc) continue;
+        const std::optional<bool> refuses = refuses_wrong_crc(to, line);
+        boards[i].crc = refuses.value_or(false);
+        boards[i].answers = refuses.has_value();
     }
     for (std::size_t i = 0; i < boards.size(); ++i) {
         if (boards[i].answers) ask_patiently(device.boards[i].address, line, errors);  // what the proof itself provoked

@@ -215,13 +215,17 @@ KeptTrial read_kept_trial(const fs::path& file) {
     return t;
 }
 
-std::vector<KeptTrial> read_history(const fs::path& folder, std::vector<std::string>& problems) {
+std::vector<fs::path> history_files(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (is_kept_trial(entry.path())) files.push_back(entry.path());
+        if (is_kept_trial(entry.path()) && !entry.is_directory(error)) files.push_back(entry.path());
     }
     std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<KeptTrial> read_history(const std::vector<fs::path>& files, std::vector<std::string>& problems) {
     std::vector<KeptTrial> out;
     for (const fs::path& file : files) {
         try {
@@ -234,12 +238,8 @@ std::vector<KeptTrial> read_history(const fs::path& folder, std::vector<std::str
     return out;
 }
 
-void delete_history(const fs::path& folder) {
-    std::vector<fs::path> files;
+void delete_history(const std::vector<fs::path>& files) {
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (is_kept_trial(entry.path())) files.push_back(entry.path());
-    }
     for (const fs::path& file : files) {
         if (!fs::remove(file, error) && error)
             throw std::runtime_error(file.string() + ": cannot be deleted: " + error.message());

@@ -68,11 +68,14 @@ std::filesystem::path keep_trial(const KeptTrial& trial, const std::filesystem::
 // Throws InputError that names file, key, what was found and what was expected.
 KeptTrial read_kept_trial(const std::filesystem::path& file);
 
-// Reads all trials of the folder, oldest first; of no folder, none. A file that cannot be read is left out, and
-// `problems` says why.
-std::vector<KeptTrial> read_history(const std::filesystem::path& folder, std::vector<std::string>& problems);
+// Returns the files of kept trials in the folder, and nothing else that is there; of no folder, none.
+std::vector<std::filesystem::path> history_files(const std::filesystem::path& folder);
 
-// Deletes the files of kept trials, and nothing else that is in the folder. Throws std::runtime_error.
-void delete_history(const std::filesystem::path& folder);
+// Reads the trials, oldest first. A file that cannot be read is left out, and `problems` says why.
+std::vector<KeptTrial> read_history(const std::vector<std::filesystem::path>& files,
+                                    std::vector<std::string>& problems);
+
+// Deletes the files, which a person has agreed to: not those that came since. Throws std::runtime_error.
+void delete_history(const std::vector<std::filesystem::path>& files);
 
 }  // namespace palpa::session

@@ -91,8 +91,10 @@ void take_press(const scene::Plan& plan, const PressMoment& press, Trial& trial)
 void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
     if (!state.answered) return;  // another pointer's sample, or one from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
-    if (!pressing && !trial.by_device) end_press(trial);
+    const bool other = pressing && sample.pointer_id != trial.presser;
+    if ((!pressing || other) && !trial.by_device) end_press(trial);
     if (!state.touch.down) return;
+    trial.presser = sample.pointer_id;
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
     if (!trial.touched_s) trial.touched_s = trial.now_s;
     if (pressing) take_press(plan, {state.touch.p_m, state.contact.depth_m, state.touch.force_N}, trial);

@@ -43,12 +43,13 @@ struct Trial {
     std::vector<PathPoint> path;  // at most kPathPoints; when full, every second point within a press is dropped
     float path_depth_m = 0.0f;    // of the last point, when it was added
     double path_step_m =
-        0.5e-3;               // least distance, along or in depth, between its points; doubles when the path is thinned
-    bool pressing = false;    // a press is going on; it ends when the pen leaves the tissue
-    bool by_device = false;   // that press is of a device that leads, and the pen does not end it
-    double pressed_m = 0.0;   // length of the way while pressing, without jitter
-    double pressed_s = 0.0;   // time spent pressing
-    double impulse_Ns = 0.0;  // integral of the force over that time
+        0.5e-3;             // least distance, along or in depth, between its points; doubles when the path is thinned
+    bool pressing = false;  // a press is going on; it ends when the pen leaves the tissue
+    std::int64_t presser = 0;  // its pointer; a pen that takes over from a finger begins another
+    bool by_device = false;    // that press is of a device that leads, and the pen does not end it
+    double pressed_m = 0.0;    // length of the way while pressing, without jitter
+    double pressed_s = 0.0;    // time spent pressing
+    double impulse_Ns = 0.0;   // integral of the force over that time
     double max_force_N = 0.0;
     bool moved_below = false;  // the tissue moved below the pen since the last sample: its way begins anew
     Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();  // place up to which pressed_m is counted

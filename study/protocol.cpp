@@ -211,6 +211,8 @@ void read_practice(files::JsonReader json, Protocol& protocol) {
     json.only({"trials", "time_limit_s"});
     protocol.practice_trials = json.integer("trials", 0, 100);
     protocol.practice_limit_s = json.number("time_limit_s", {0.0, 86400.0}, 0.0);
+    if (protocol.practice_limit_s > 0.0 && protocol.practice_trials == 0)
+        json.fail("time_limit_s", "a value", "none: there are no practice trials");
     json.finish();
 }
 

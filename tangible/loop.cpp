@@ -195,7 +195,6 @@ TangibleCommand tangible_tick(const TangiblePlan& plan, const TangibleInput& in,
     TangibleCommand out;
     out.time_s = std::isfinite(in.time_s) ? in.time_s : 0.0;
     out.actuators = plan.model->n_actuators();
-    out.by_position = plan.loop.command == CommandKind::position;
     want(plan, in, state, out);
     undo_lag(plan, state, out);
     return out;

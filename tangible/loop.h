@@ -50,7 +50,6 @@ struct TangibleCommand {
     Actuation actuation{};  // N, Pa
     Lengths length{};       // m; minus m^3
     std::int32_t actuators = 0;
-    bool by_position = false;
     bool pressed = false;
     bool saturated = false;  // the actuators cannot reach what is wanted, or the tissue is not known as deep
     bool held = false;       // the last valid command is repeated

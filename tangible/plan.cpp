@@ -44,6 +44,11 @@ CommandKind command_named(std::string_view name) {
     return name == "position" ? CommandKind::position : CommandKind::force;
 }
 
+std::string_view name_of(CommandKind command) {
+    if (command == CommandKind::mixed) return "mixed";
+    return command == CommandKind::position ? "position" : "force";
+}
+
 LoopOptions loop_options(const scene::TangibleOptions& scene) {
     LoopOptions options;
     options.inverse.fidelity = fidelity_named(scene.fidelity);
@@ -88,7 +93,8 @@ void command_as_wired(bool asked, TangiblePlan& plan) {
         throw files::bad_input(device.file, "wires.actuators, " + other->name + ".drive", position ? "force" : "length",
                                position ? "length, since the drives are to be told positions (command)"
                                         : "force, since the drives are to be told forces (--command)");
-    plan.loop.command = CommandKind::position;
+    const bool all = drives_of(devices::Drive::force) == device.wires->channels.end();
+    plan.loop.command = all ? CommandKind::position : CommandKind::mixed;
 }
 
 TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan) {

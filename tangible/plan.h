@@ -12,8 +12,8 @@
 namespace palpa::tangible {
 
 // What the drives are told: tensions and pressures, or the cables' lengths of the solved model, as the paper does
-// (pressures stay pressures).
-enum class CommandKind { force, position };
+// (pressures stay pressures). Mixed: each cable of a real device what its own drive takes.
+enum class CommandKind { force, position, mixed };
 
 struct LoopOptions {
     double rate_Hz = 100.0;
@@ -27,6 +27,8 @@ struct LoopOptions {
 };
 
 CommandKind command_named(std::string_view name);  // "force" or "position"
+
+std::string_view name_of(CommandKind command);  // "force", "position" or "mixed"
 
 // What the scene asks of the loop.
 LoopOptions loop_options(const scene::TangibleOptions& scene);

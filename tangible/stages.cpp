@@ -54,8 +54,7 @@ scene::StageText inverse_stage(const TangiblePlan& plan, double tick_us) {
     const Fidelity fidelity = plan.loop.inverse.fidelity;
     const std::string text = std::string(kFidelityNames[static_cast<std::size_t>(fidelity)]) + ": " +
                              steps_of(fidelity) + ", " + std::to_string(plan.model->equations()) +
-                             " equations; commanded by " +
-                             (plan.loop.command == CommandKind::position ? "position" : "force") + ", " +
+                             " equations; commanded by " + std::string(name_of(plan.loop.command)) + ", " +
                              short_number(plan.loop.rate_Hz) + " Hz";
     return {"inverse", "tick", text, error_of(fidelity), tick_us};
 }

@@ -172,7 +172,9 @@ void add_run(CLI::App& app) {
                         "force without a lag");
     command->add_option("--record", options->record, "write the input to a new trace TRACE.tsv");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
-    command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
+    command
+        ->add_option("--quit-after-s", options->quit_after_s,
+                     "close the window this many seconds after its first frame")
         ->check(CLI::Range(0.0, 1e6));
     command->add_option("--width-px", options->width_px, "width of the window (default: as last time, 1280 at first)")
         ->check(CLI::Range(100, 16384));

@@ -43,7 +43,9 @@ void add_study_run(CLI::App& study) {
                      "participant's code of letters and digits (default: the app asks for it)")
         ->transform(code_of_participant());
     command->add_option("--screenshot", options->screenshot, "write a PNG of the last frame");
-    command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
+    command
+        ->add_option("--quit-after-s", options->quit_after_s,
+                     "close the window this many seconds after its first frame")
         ->check(CLI::Range(0.0, 1e6));
     command->add_option("--width-px", options->width_px, "width of the window (default: as last time, 1280 at first)")
         ->check(CLI::Range(100, 16384));

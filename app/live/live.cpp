@@ -224,7 +224,7 @@ struct Live::Impl {
         if (options.guided || is_first_start(options, app)) begin_guided(*window, *gui, app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
-        began_s = frame_s = stirred_s = app.drawn_s = window->now_s();
+        frame_s = stirred_s = app.drawn_s = window->now_s();
     }
 
     // The window's close button asks first, as Ctrl+Q does; pressed a second time, it closes.
@@ -242,7 +242,7 @@ struct Live::Impl {
     bool over() {
         if (closes()) return true;
         if (app.trace && app.next_row == app.trace->samples.size()) return true;
-        return app.options.quit_after_s > 0.0 && window->now_s() - began_s > app.options.quit_after_s;
+        return app.options.quit_after_s > 0.0 && app.frames > 0 && window->now_s() - shown_s > app.options.quit_after_s;
     }
 
     void take_samples(double wait_s) {
@@ -285,7 +285,7 @@ struct Live::Impl {
     std::optional<render::TissueDrawer> tissue;  // destroyed before the window
     bool ready = false;
     double asked_s = 1e-9 * static_cast<double>(scene::steady_ns());
-    double began_s = 0.0;
+    double shown_s = 0.0;    // when the first frame was
     double frame_s = 0.0;    // when the last frame was built
     double stirred_s = 0.0;  // when the last event or sample arrived
     double first_frame_s = 0.0;
@@ -309,7 +309,10 @@ bool Live::turn(Draw draw) {
     if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
     show(*it.window, it.app, {*it.gui, *it.tissue}, now_s - it.frame_s);  // 3. show
     it.frame_s = now_s;
-    if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(scene::steady_ns()) - it.asked_s;
+    if (it.app.frames == 1) {
+        it.first_frame_s = 1e-9 * static_cast<double>(scene::steady_ns()) - it.asked_s;
+        it.shown_s = it.window->now_s();
+    }
     return true;
 }
 

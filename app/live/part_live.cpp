@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "app/assets.h"
@@ -35,8 +37,8 @@ void keep_names(const fs::path& from, files::Json& part) {
 }
 
 // Whether a copy is of this design as it is now, and has more operations: a part elsewhere may have a file of the same name,
-// and a copy whose edits were all undone is as its design. One that cannot be read is told of when it is opened.
-bool holds_edits(const fs::path& copy, const fs::path& design) {
+// and a copy whose edits were all undone is as its design. Nothing of one that cannot be read.
+std::optional<bool> holds_edits(const fs::path& copy, const fs::path& design) {
     try {
         files::Json edited = files::read_json(copy);
         files::Json own = files::read_json(design);
@@ -46,23 +48,44 @@ bool holds_edits(const fs::path& copy, const fs::path& design) {
         const files::Json begin = std::exchange(own.at("shape"), nullptr);
         return edited == own && shape.size() > begin.size() && std::equal(begin.begin(), begin.end(), shape.begin());
     } catch (const std::exception&) {
-        return true;
+        return std::nullopt;
     }
 }
 
-// The files of a design's edits: the last one that holds any, empty if none does, and the next.
+// Which of a design's copies a file is: 1 for NAME-edited.json, 2 for NAME-edited-2.json; 0 for other files.
+int number_of_copy(const fs::path& file, const fs::path& design) {
+    const std::string name = file.filename().string(), begin = design.stem().string() + "-edited", end = ".json";
+    if (name == begin + end) return 1;
+    if (name.size() < begin.size() + 1 + end.size() || !name.starts_with(begin + "-") || !name.ends_with(end)) return 0;
+    const std::string number = name.substr(begin.size() + 1, name.size() - begin.size() - 1 - end.size());
+    const bool counts = number.size() < 9 && number.find_first_not_of("0123456789") == std::string::npos;
+    return counts && !number.empty() ? std::stoi(number) : 0;
+}
+
+// The files of a design's edits: the one that was changed last of those that hold any, empty if none does, and the next.
+// One that cannot be read is the last only if no other holds any; it is told of when it is opened.
 struct EditedFiles {
     fs::path last;
     fs::path next;
 };
 
 EditedFiles edited_files(const fs::path& design) {
-    const std::string stem = design.stem().string() + "-edited";
-    EditedFiles out{{}, edits_folder() / (stem + ".json")};
-    for (int i = 2; fs::exists(out.next); ++i) {
-        if (holds_edits(out.next, design)) out.last = out.next;
-        out.next = edits_folder() / (stem + "-" + std::to_string(i) + ".json");
+    EditedFiles out;
+    std::tuple<bool, fs::file_time_type, int> best{};
+    int highest = 0;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(edits_folder(), error)) {
+        const int number = number_of_copy(entry.path(), design);
+        highest = std::max(highest, number);
+        if (number == 0) continue;
+        const std::optional<bool> holds = holds_edits(entry.path(), design);
+        const std::tuple one{holds.has_value(), entry.last_write_time(error), number};
+        if (!holds.value_or(true) || (!out.last.empty() && one < best)) continue;
+        best = one;
+        out.last = entry.path();
     }
+    const std::string stem = design.stem().string() + "-edited";
+    out.next = edits_folder() / (stem + (highest == 0 ? "" : "-" + std::to_string(highest + 1)) + ".json");
     return out;
 }
 

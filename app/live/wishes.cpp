@@ -37,8 +37,9 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
 }
 
 void delete_results(App& app) {
-    attempt(app, [&] { session::delete_history(app.history_folder); });
-    if (app.view.history) app.view.history = make_history_view(app.history_folder);
+    if (!app.view.history) return;
+    attempt(app, [&] { session::delete_history(app.view.history->files); });
+    app.view.history = make_history_view(app.history_folder);
 }
 
 void press_by_hold(App& app) {

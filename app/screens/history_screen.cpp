@@ -207,7 +207,8 @@ std::string found_text(const KeptTrial& trial) {
 std::shared_ptr<HistoryView> make_history_view(const std::filesystem::path& folder) {
     auto history = std::make_shared<HistoryView>();
     history->folder = folder;
-    if (!folder.empty()) history->trials = session::read_history(folder, history->problems);
+    if (!folder.empty()) history->files = session::history_files(folder);
+    history->trials = session::read_history(history->files, history->problems);
     if (!history->trials.empty()) choose_trial(history->trials.size() - 1, *history);
     return history;
 }

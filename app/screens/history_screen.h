@@ -12,11 +12,12 @@
 namespace palpa::app {
 
 struct HistoryView {
-    std::filesystem::path folder;            // empty: this run keeps no results
-    std::vector<session::KeptTrial> trials;  // oldest first
-    std::vector<std::string> problems;       // files that could not be read
-    std::size_t chosen = 0;                  // index in `trials`
-    double shown_s = 0.0;                    // of the chosen trial's path, since the trial began
+    std::filesystem::path folder;              // empty: this run keeps no results
+    std::vector<std::filesystem::path> files;  // of trials, also of those that could not be read
+    std::vector<session::KeptTrial> trials;    // oldest first
+    std::vector<std::string> problems;         // files that could not be read
+    std::size_t chosen = 0;                    // index in `trials`
+    double shown_s = 0.0;                      // of the chosen trial's path, since the trial began
     bool plays = false;
     bool asks = false;  // whether everything is to be deleted
 };

@@ -30,8 +30,10 @@ std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffness
     out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {files::short_number(missing)})
                                 : words::kNoMissingData);
     out.push_back(words::filled(
-        words::kNoise, {knows_noise(map) ? files::short_number(1e3 * normal_noise_N(map)) + " mN" : words::kNotKnown,
-                        std::to_string(field.isotonic_changed)}));
+        words::kNoise,
+        {knows_noise(map) ? words::filled(words::kNoiseAtMost, {files::short_number(1e3 * normal_noise_N(map))})
+                          : words::kNotKnown,
+         std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
     out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), in_mm(map.indenter_radius_m)}));
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {

@@ -520,6 +520,7 @@ inline constexpr const char* kForceFromTo = "Force {} to {} N";
 inline constexpr const char* kShareMissing = "Missing data: {} %";
 inline constexpr const char* kNotKnown = "not known";
 inline constexpr const char* kNoise = "Noise {}; {} forces do not rise with depth";
+inline constexpr const char* kNoiseAtMost = "at most {} mN";
 inline constexpr const char* kTangential = "Tangential force: {}";
 inline constexpr const char* kIndenter = "Indenter: {}, radius {} mm";
 inline constexpr const char* kPlacedNodule = "Nodule {} (placed) at {}, {} mm";

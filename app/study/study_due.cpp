@@ -135,8 +135,9 @@ files::Json now_json(const StudyRun& run) {
         json["rated"] = run.protocol.conditions[rated->condition].id;
         return json;
     }
-    // nothing is presented any more to somebody who has left
-    if (!run.progress.next || at<step::Withdrawn>(run)) return json;
+    // nothing is presented yet to somebody who answers the first questions, nor any more to somebody who has left
+    const bool before = at<step::Again>(run) || at<step::Consent>(run) || at<step::Questions>(run);
+    if (!run.progress.next || before || at<step::Withdrawn>(run)) return json;
     const study::PlannedTrial& trial = *run.progress.next;
     json["trial"] = trial.trial;
     json["condition"] = run.protocol.conditions[trial.condition].id;

@@ -138,6 +138,17 @@ TEST_CASE("pins: boards without a timeout, or without CRC, are not driven") {
     }
 }
 
+TEST_CASE("pins: a noisy line does not make a board one that checks no CRC") {
+    for (int seed = 1; seed <= 6; ++seed) {
+        CAPTURE(seed);
+        SimulatorProcess simulator(PALPA_MAESTRO_SIMULATOR,
+                                   {kDriverPins, "--garble", "0.03", "--seed", std::to_string(seed)});
+        PinDriver driver(device_at(simulator));
+        REQUIRE(wait_for([&] { return driver.state() != PinState::proving; }));
+        CHECK(driver.state() != PinState::no_crc);
+    }
+}
+
 TEST_CASE("pins: a device file without CRC drives boards without CRC") {
     SimulatorProcess simulator(PALPA_MAESTRO_SIMULATOR, {kDriverPins, "--no-crc"});
     PinDevice device = device_at(simulator);

@@ -131,17 +131,20 @@ TEST_CASE("history: trials of one second do not overwrite each other, and only t
     write_text_whole(folder / "notes.txt", "mine");
     write_text_whole(folder / "broken.trial.json", R"({"palpa_trial": 1, "utc": "x", "scene": 3})");
     std::vector<std::string> problems;
-    const std::vector<KeptTrial> all = read_history(folder.path(), problems);
+    std::filesystem::create_directory(folder / "own.trial.json");
+    const std::vector<std::filesystem::path> files = history_files(folder.path());
+    const std::vector<KeptTrial> all = read_history(files, problems);
     REQUIRE(all.size() == 3);
     CHECK(all[0].utc == "2025-01-01T00:00:00Z");
     CHECK(all[1].found == 1);
     CHECK(all[2].found == 2);
     REQUIRE(problems.size() == 1);
     CHECK(contains(problems[0], "broken.trial.json: scene: found 3"));
-    delete_history(folder.path());
+    trial.found = 3;
+    const std::filesystem::path later = keep_trial(trial, folder.path());  // while the question stands
+    delete_history(files);
     CHECK(std::filesystem::exists(folder / "notes.txt"));
-    problems.clear();
-    CHECK(read_history(folder.path(), problems).empty());
-    CHECK(problems.empty());
-    CHECK(read_history(folder / "none", problems).empty());
+    CHECK(std::filesystem::exists(folder / "own.trial.json"));
+    CHECK(history_files(folder.path()) == std::vector{later});
+    CHECK(history_files(folder / "none").empty());
 }

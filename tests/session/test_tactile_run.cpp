@@ -349,7 +349,7 @@ TEST_CASE("tactile live: a silence names the device that does not answer") {
     using devices::Fault;
     const auto words = [](Fault fault, const Silent& silent) { return std::string(fault_words(fault, silent)); };
     CHECK(words(Fault::none, {true, false, true}).empty());
-    CHECK(words(Fault::silence, {}) == "nothing comes from the device");
+    CHECK(words(Fault::silence, {}) == "nothing comes from a device");
     CHECK(words(Fault::silence, {true, true, false}) == "nothing comes from the arm");
     CHECK(words(Fault::silence, {false, true, false}) == "nothing comes from the force sensor");
     CHECK(words(Fault::silence, {false, false, true}) == "nothing comes from the pins");

@@ -38,11 +38,12 @@ struct Trainee {
     Eigen::Vector2d px(double x_mm, double y_mm) const {
         return px_of_tissue(session.state.view, {1e-3 * x_mm, 1e-3 * y_mm});
     }
-    void sample(Phase phase, double x_mm, double y_mm, double pressure, Action action = Action::none) {
+    void sample(Phase phase, double x_mm, double y_mm, double pressure, Action action = Action::none,
+                Tool tool = Tool::pen) {
         Sample s;
         s.t_host_s = t_s += 0.01;
-        s.tool = Tool::pen;
-        s.pointer_id = -1;
+        s.tool = tool;
+        s.pointer_id = tool == Tool::pen ? -1 : 3;
         s.phase = phase;
         s.x_px = px(x_mm, y_mm).x();
         s.y_px = px(x_mm, y_mm).y();
@@ -220,6 +221,18 @@ TEST_CASE("trial: a window that changes its size under a pen that presses adds n
     person.sample(Phase::move, 80.0, 60.0, 0.5);  // where the tissue is now
     CHECK(person.session.trial.pressed_m == way_m);
     CHECK(person.session.trial.path.back().begins);
+}
+
+TEST_CASE("trial: the way from a resting finger to the pen that takes over was not pressed") {
+    Trainee person;
+    const auto finger = [&](Phase phase) { person.sample(phase, 70.0, 70.0, 0.4, Action::none, Tool::finger); };
+    finger(Phase::down);
+    for (int i = 0; i < 5; ++i) finger(Phase::move);
+    person.sample(Phase::down, 30.0, 30.0, 0.4);
+    for (int i = 0; i < 5; ++i) person.sample(Phase::move, 30.0, 30.0, 0.4);
+    CHECK(person.session.trial.pressed_m == 0.0);
+    const auto begins = [](const PathPoint& point) { return point.begins; };
+    CHECK(std::count_if(person.session.trial.path.begin(), person.session.trial.path.end(), begins) == 2);
 }
 
 TEST_CASE("trial: a very long path is thinned, not cut") {

@@ -55,6 +55,12 @@ TEST_CASE("loop: real drives are told what their wires say, and a command that o
     TangiblePlan lengths = wired(Drive::length, CommandKind::force);
     command_as_wired(false, lengths);
     CHECK(lengths.loop.command == CommandKind::position);
+    TangiblePlan both = wired(Drive::length, CommandKind::force);
+    auto model = std::make_shared<DeviceModel>(*both.model);
+    model->device.wires->channels.front().drive = Drive::force;
+    both.model = model;
+    command_as_wired(false, both);
+    CHECK(name_of(both.loop.command) == "mixed");
     CHECK_THROWS_WITH(command_as_wired(true, std::ref(lengths = wired(Drive::length, CommandKind::force))),
                       doctest::Contains("left.drive: found length, expected force"));
     for (const bool asked : {false, true}) {

@@ -195,7 +195,7 @@ TEST_CASE("tactile run: link silent for a moment: the fault is counted, and the 
     const files::Json json = result_of(slab.run("--arm-port 127.0.0.1:" + arm.port() + " --json"));
     CHECK(json["steps"] == 2001);
     REQUIRE(json["faults"].size() == 1);
-    CHECK(json["faults"][0]["fault"] == "nothing comes from the device");
+    CHECK(json["faults"][0]["fault"] == "nothing comes from a device");
     CHECK(json["devices"][0]["simulated"] == false);  // nobody told the program that it is one
 }
 

@@ -173,6 +173,34 @@ TEST_CASE("part edits: an undone first change is out of its file too, and is not
     CHECK(desk.app.view.part.earlier);
 }
 
+TEST_CASE(
+    "part edits: the copy that was changed last is gone on with, whatever copies were removed or cannot be read") {
+    const Home home;
+    const auto session = [&] {
+        Desk desk(home.scene());
+        wish(PartWish::Kind::edit, desk);
+        return design_of(desk);
+    };
+    const auto earlier = [&] {
+        Desk desk(home.scene());
+        follow_parts(desk.window, desk.gui, desk.app);
+        REQUIRE(desk.app.view.part.earlier);
+        wish(PartWish::Kind::earlier, desk);
+        CHECK(desk.app.notices.problems.empty());
+        return design_of(desk);
+    };
+    session();
+    REQUIRE(session() == home.edited("-2"));
+    fs::remove(home.edited());
+    CHECK(earlier() == home.edited("-2"));
+    CHECK(session() == home.edited("-3"));  // a name that is free again stays free
+    CHECK(earlier() == home.edited("-3"));
+    std::ofstream(home.edited("-4")) << "{";
+    CHECK(earlier() == home.edited("-3"));
+    fs::last_write_time(home.edited("-2"), fs::last_write_time(home.edited("-3")) + std::chrono::seconds(2));
+    CHECK(earlier() == home.edited("-2"));
+}
+
 TEST_CASE("part edits: the method that was chosen stays after a change and after it is undone") {
     const Home home;
     Desk desk(home.scene());
