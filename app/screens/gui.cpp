@@ -226,9 +226,11 @@ void Gui::hand_over(const PanelInput& input) {
         case PanelInput::Kind::key:
             return hand_over_key(input);
         case PanelInput::Kind::text:
-            return io.AddInputCharactersUTF8(input.text.c_str());
         case PanelInput::Kind::replace:
-            return replace_text(input.text);
+            // Dear ImGui drops letters while Ctrl is held; no key may have told that it was let go
+            io.KeyCtrl = false;
+            if (input.kind == PanelInput::Kind::replace) return replace_text(input.text);
+            return io.AddInputCharactersUTF8(input.text.c_str());
     }
 }
 

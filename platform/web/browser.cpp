@@ -82,7 +82,7 @@ EM_JS(void, palpa_listen, (), {
         const code = code_of(event);
         // a button of a dialog that has just been closed keeps the focus until the page is drawn again
         const of_page = document.querySelector('dialog[open]') || (at && at.closest && at.closest('input, button, a') && !at.closest('dialog'));
-        const of_browser = event.altKey || event.metaKey || (event.ctrlKey && !'qsyz'.includes(String.fromCharCode(code)));
+        const of_browser = event.altKey || event.metaKey || (event.ctrlKey && !'aqsyz'.includes(String.fromCharCode(code)));
         if (code === 0 || (is_down && (of_page || of_browser))) return; // whatever is let go was perhaps held before
         const typed = event.key.length === 1 && !event.ctrlKey ? event.key.charCodeAt(0) : 0;
         if (!of_page) event.preventDefault();

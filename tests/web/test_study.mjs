@@ -288,8 +288,12 @@ test('without a desk: the protocol was kept, two people and a single run are exp
         if (x === 700) break;
         await key(page, 'Enter');
         await at(page, 'code');
-        await page.keyboard.type('4');
+        await page.keyboard.type('7'); // a slip, and one letter in its place
         await frames(page, 4);
+        await page.keyboard.press('Control+A');
+        await frames(page, 4);
+        await page.keyboard.type('4');
+        await page.waitForTimeout(500);
         await key(page, 'Enter');
     }
     assert.match(page.url(), /participant=4$/);

@@ -134,6 +134,20 @@ TEST_CASE("gui: a text from elsewhere replaces the field's, and Enter comes afte
     CHECK(form.entered == 2);
 }
 
+TEST_CASE("gui: what is typed after Ctrl and a key is not lost, also where nobody tells that Ctrl was let go") {
+    for (const bool elsewhere : {true, false}) {
+        Form form;
+        std::strcpy(form.text, "P7");
+        form.frames(4);
+        test::tap(form.window, SDLK_a, KMOD_CTRL);
+        form.frames(4);
+        if (elsewhere) form.gui.type_instead("8");
+        if (!elsewhere) form.type('8');
+        form.frames(4);
+        CHECK(std::string(form.text) == "8");
+    }
+}
+
 TEST_CASE("gui: letters of a study's texts are drawn where the font has them") {
     if (system_font_file().empty()) return;
     Form form;
