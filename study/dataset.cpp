@@ -2,6 +2,7 @@
 
 #include "files/json.h"
 #include "files/text.h"
+#include "study/table_text.h"
 
 namespace palpa::study {
 namespace {
@@ -71,7 +72,7 @@ std::string named_list(const char* title, const std::vector<std::string>& items)
 
 std::string readme_text(const Protocol& protocol, const StudyKind& kind) {
     const bool simulated = kind.simulated;
-    std::string out = "# " + protocol.name + "\n\n";
+    std::string out = "# " + markdown_cell(protocol.name) + "\n\n";
     if (simulated) {
         out +=
             "SIMULATED: no person took part. Hands and eyes were simulated by `palpa study simulate`, whose numbers "

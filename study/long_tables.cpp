@@ -29,7 +29,8 @@ LongTable long_table(const std::string& name, const std::string& title, const st
 constexpr LongColumn kWhoColumn{"participant", "", "code without sub-; n/a: not given"};
 constexpr LongColumn kGroupOf{"group", "", "of the participant; n/a: none"};
 constexpr LongColumn kConditionColumn{"condition", "", "as the protocol or the table names it"};
-constexpr LongColumn kWhichTrial{"repeat", "", "1, 2, ...: which of this person's trials under this condition"};
+constexpr LongColumn kWhichTrial{"repeat", "",
+                                 "1, 2, ...: which of this person's analysed trials under this condition"};
 
 // Participant, group and condition.
 std::vector<std::string> who_and_what(const Observations& seen, int participant, int condition) {

@@ -37,7 +37,7 @@ bool is_code(std::string_view code) {
     const bool plain = std::all_of(code.begin(), code.end(), [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     });
-    return plain && !reads_as_missing(code);
+    return plain && !reads_as_missing(code) && !names_a_sum(code);
 }
 
 }  // namespace palpa::study

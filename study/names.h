@@ -9,7 +9,9 @@ namespace palpa::study {
 inline constexpr std::string_view kNameRule =
     "a name without tabs or double quotes that tables do not take for a missing value (as NA, n/a, null, nan)";
 inline constexpr std::string_view kCodeRule =
-    "letters and digits that tables do not take for a missing value (as NA, null, nan)";
+    "letters and digits that tables do not take for a missing value (as NA, null, nan) or for everybody (as all, "
+    "total)";
+inline constexpr std::string_view kSumRule = "a name that no row of sums has (as all, total, sum, overall)";
 
 // True for the words that pandas reads as a missing value, among them those of R and the empty text.
 bool reads_as_missing(std::string_view name);

@@ -6,6 +6,7 @@
 #include "study/comparisons.h"
 #include "study/order_balance.h"
 #include "study/protocol_checks.h"
+#include "study/table_text.h"
 
 namespace palpa::study {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kMostListed = 1000;
 
 std::string sheet_row(const std::string& what, const std::string& value) {
-    return "| " + what + " | " + value + " |\n";
+    return "| " + what + " | " + markdown_cell(value) + " |\n";
 }
 
 std::string sheet_value(const std::string& value) { return value.empty() ? "NOT STATED" : value; }
@@ -64,9 +65,9 @@ std::string conditions_part(const Protocol& protocol, const SheetOptions& option
                 files += (files.empty() ? "" : ", ") + key + " " +
                          (value.is_string() ? value.get<std::string>() : value.dump());
         }
-        out += "| " + one.id + " | " + one.title + " | " + name_of(task_of(protocol, i)) + " | " +
-               name_of(one.modality) + " | " + (one.scene.empty() ? "none" : one.scene) + " | " +
-               std::to_string(tests_of(protocol, i)) + " | " + (files.empty() ? "none" : files) + " |\n";
+        out += "| " + markdown_cell(one.id) + " | " + markdown_cell(one.title) + " | " + name_of(task_of(protocol, i)) +
+               " | " + name_of(one.modality) + " | " + (one.scene.empty() ? "none" : markdown_cell(one.scene)) + " | " +
+               std::to_string(tests_of(protocol, i)) + " | " + (files.empty() ? "none" : markdown_cell(files)) + " |\n";
     }
     return out;
 }
@@ -93,11 +94,13 @@ std::string design_part(const Protocol& protocol) {
     out +=
         sheet_row("order of conditions, of trials",
                   std::string(name_of(protocol.order)) + ", " + name_of(protocol.trial_order)) +
-        sheet_row("time limit of a test", sheet_limit(protocol.time_limit_s)) +
-        sheet_row("practice before each condition",
-                  protocol.practice_trials == 0 ? "none"
-                                                : std::to_string(protocol.practice_trials) + " trials, time limit " +
-                                                      sheet_limit(protocol.practice_limit_s)) +
+        sheet_row(
+            any_pairs(protocol, true) ? "time limit of a test, of a pair for each surface" : "time limit of a test",
+            sheet_limit(protocol.time_limit_s)) +
+        sheet_row("practice", protocol.practice_trials == 0
+                                  ? "none"
+                                  : std::to_string(protocol.practice_trials) + " trials " + practice_comes(protocol) +
+                                        ", time limit " + sheet_limit(protocol.practice_limit_s)) +
         sheet_row("break after",
                   protocol.break_every_trials > 0 ? std::to_string(protocol.break_every_trials) + " tests" : "no test");
     if (any_scene(protocol))
@@ -132,13 +135,14 @@ std::string primary_text(const Protocol& protocol) {
 }
 
 std::string analysis_part(const Protocol& protocol) {
-    std::string out =
-        "\n## Analysis\n\n| | |\n| --- | --- |\n" +
-        sheet_row("primary comparison", sheet_value(primary_text(protocol))) +
-        sheet_row("all other comparisons",
-                  std::string("as the primary one, exploratory; p corrected by Holm ") + kHolmFamilies +
-                      (protocol.groups.size() > 1 ? "; interactions of PPV are not tested" : "")) +
-        sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
+    std::string out = "\n## Analysis\n\n| | |\n| --- | --- |\n" +
+                      sheet_row("primary comparison", sheet_value(primary_text(protocol)));
+    const bool compared = protocol.conditions.size() > 1 || protocol.groups.size() > 1;
+    if (compared && (any_pairs(protocol, false) || any_task(protocol, TaskKind::choice)))
+        out += sheet_row("all other comparisons",
+                         std::string("as the primary one, exploratory; p corrected by Holm ") + kHolmFamilies +
+                             (protocol.groups.size() > 1 ? "; interactions of PPV are not tested" : ""));
+    out += sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
     const auto searched = [&](bool by_hand) {
         for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
             if (!compares(task_of(protocol, i)) && (protocol.conditions[i].modality == Modality::hand) == by_hand)
@@ -154,14 +158,16 @@ std::string analysis_part(const Protocol& protocol) {
                 "within the nodule's diameter or 8 mm of its axis, whichever is larger; as many nodules as possible "
                 "are found, each by one mark") +
             sheet_row("several marks on one nodule", "one hit; the highest confidence counts as its rating") +
-            sheet_row(
-                "free response",
-                "wAFROC1, since each condition has one tissue, with nodules; people and cases random (Obuchowski and "
-                "Rockette, jackknife)");
+            sheet_row("free response",
+                      std::string("wAFROC1, since each condition has one tissue, where that has nodules; ") +
+                          (protocol.repeats > 1 ? "people and cases random (Obuchowski and Rockette, jackknife)"
+                                                : "no test: it needs several trials of a person under each condition"));
     }
     if (any_pairs(protocol, false))
-        out += sheet_row("nodules as a sample",
-                         "mixed logistic model with people and nodules crossed, likelihood-ratio test");
+        out += sheet_row(
+            "nodules as a sample",
+            "mixed logistic model with people and nodules crossed, where there are several of both; likelihood-ratio "
+            "test");
     if (any_task(protocol, TaskKind::choice))
         out += sheet_row("choices",
                          "share of right answers against one half; psychometric functions with lapses up to 0.05");
@@ -190,7 +196,8 @@ std::string sample_part(const Protocol& protocol) {
         if (choice && scene && refused == nullptr) refused = "choices that are felt through a scene";
         any = any || choice || scene;
     }
-    if (!any) refused = "conditions by hand only";
+    if (!any && refused == nullptr) refused = "conditions by hand only";
+    if (protocol.planned_participants == 1) refused = "single participant";
     const std::string n = protocol.planned_participants > 0 ? std::to_string(protocol.planned_participants) : "";
     return "\n## Sample size\n\n| | |\n| --- | --- |\n" + sheet_row("planned participants", sheet_value(n)) +
            sheet_row("stopping rule", sheet_value(protocol.stopping_rule)) +
@@ -239,8 +246,8 @@ std::string orders_part(const Protocol& protocol, const SheetOptions& options) {
         "| participant | group | order | tests |\n| --- | --- | --- | --- |\n";
     for (int number = 1; number <= n; ++number) {
         const PlannedParticipant who = plan_participant(protocol, number);
-        out += "| " + std::to_string(number) + " | " + protocol.groups[who.group].id + " | " +
-               std::to_string(who.order_id) + " | " + order_text(protocol, who) + " |\n";
+        out += "| " + std::to_string(number) + " | " + markdown_cell(protocol.groups[who.group].id) + " | " +
+               std::to_string(who.order_id) + " | " + markdown_cell(order_text(protocol, who)) + " |\n";
     }
     return out;
 }
@@ -262,7 +269,8 @@ std::vector<std::string> missing_statements(const Protocol& protocol) {
 }
 
 std::string preregistration_sheet(const Protocol& protocol, const SheetOptions& options) {
-    std::string out = "# Preregistration: " + protocol.name + "\n\nMade from the protocol by " + options.program +
+    std::string out = "# Preregistration: " + markdown_cell(protocol.name) + "\n\nMade from the protocol by " +
+                      options.program +
                       ". The protocol belongs beside this sheet; its SHA-256 says that it is the one.\n";
     const std::vector<std::string> missing = missing_statements(protocol);
     if (!missing.empty()) out += "\n**Not stated in the protocol:**\n\n";

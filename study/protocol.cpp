@@ -23,6 +23,7 @@ constexpr const char* kMethods[] = {"weighted-up-down", "quest-plus"};
 std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
     if (!is_name(id)) json.fail("id", files::shown(id), kNameRule);
+    if (names_a_sum(id)) json.fail("id", files::shown(id), kSumRule);
     if (!known.insert(id).second) json.fail("id", files::shown(id) + " a second time", "each name once");
     return id;
 }
@@ -252,6 +253,10 @@ DatasetAbout read_about(files::JsonReader json) {
 }
 
 }  // namespace
+
+std::string practice_comes(const Protocol& protocol) {
+    return protocol.trial_order == TrialOrder::blocked ? "before each condition" : "of each condition before all tests";
+}
 
 Protocol read_protocol(const std::filesystem::path& file) {
     Protocol protocol;

@@ -132,4 +132,8 @@ const char* name_of(TaskKind task);
 const char* name_of(TrialOrder order);
 const char* name_of(StaircaseMethod method);
 
+// When a participant's practice comes: "before each condition", or, where the trials of the conditions are mixed, "of each
+// condition before all tests".
+std::string practice_comes(const Protocol& protocol);
+
 }  // namespace palpa::study

@@ -130,11 +130,6 @@ void append_row(const Row& row, const char* before, const char* between, const c
     out += after;
 }
 
-std::string escaped(std::string text) {
-    for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.replace(i, 1, "\\|");
-    return text;
-}
-
 // Adds the column `group`, and below the rows of all people those of each group.
 void add_groups(const Report& report, std::vector<ReportTable>& tables) {
     for (ReportTable& table : tables) {
@@ -262,7 +257,7 @@ std::string report_markdown(const Report& report) {
         append_row(table.columns, "| ", " | ", " |\n", out);
         append_row(Row(table.columns.size(), "---"), "| ", " | ", " |\n", out);
         for (Row row : table.rows) {
-            for (std::string& cell : row) cell = escaped(cell);
+            for (std::string& cell : row) cell = markdown_cell(cell);
             append_row(row, "| ", " | ", " |\n", out);
         }
     }

@@ -16,7 +16,7 @@ class StardForm {
         text_ += "\n## " + title + "\n\n| item | what is asked | this study |\n| --- | --- | --- |\n";
     }
     void item(const std::string& number, const std::string& asked, const std::string& answer = kToFillIn) {
-        text_ += "| " + number + " | " + asked + " | " + (answer.empty() ? kToFillIn : answer) + " |\n";
+        text_ += "| " + number + " | " + asked + " | " + (answer.empty() ? kToFillIn : markdown_cell(answer)) + " |\n";
     }
     std::string text() const { return text_; }
 
@@ -65,16 +65,25 @@ std::string by_task(const StardTasks& tasks, const std::string& on_screen, const
 
 bool only_choices(const Report& report) { return report.trials == 0 && report.forced_choices > 0; }
 
-std::string index_tests(const Protocol* protocol) {
+// Trials on the screen have files of settings, but no choices without a scene, or of simulated people.
+bool has_settings(const Report& report, const Protocol* protocol) {
+    bool out = false;
+    for (std::size_t i = 0; protocol && i < protocol->conditions.size(); ++i) {
+        const bool pairs = compares(task_of(*protocol, i));
+        out |= !protocol->conditions[i].scene.empty() && (!pairs || !report.simulated);
+    }
+    return out;
+}
+
+std::string index_tests(const Report& report, const Protocol* protocol) {
     if (!protocol) return "";
     std::string out;
     for (const Condition& one : protocol->conditions) {
         out += (out.empty() ? "" : "; ") + one.id + ": " + name_of(one.modality) +
                (one.scene.empty() ? "" : ", scene " + one.scene) + (one.device == kNone ? "" : ", " + one.device);
     }
-    const bool any_scene = std::any_of(protocol->conditions.begin(), protocol->conditions.end(),
-                                       [](const Condition& one) { return !one.scene.empty(); });
-    return "palpation under " + out + (any_scene ? ". Settings of every trial with a scene are in the logs" : "");
+    return "palpation under " + out +
+           (has_settings(report, protocol) ? ". Settings of the trials on the screen are in the logs" : "");
 }
 
 std::string took_part(const Report& report) {
@@ -83,7 +92,8 @@ std::string took_part(const Report& report) {
            " are analysed";
 }
 
-std::string stard_flow(const Report& report) {
+std::string stard_flow(const Report& report, const Protocol* protocol) {
+    if (!protocol) return took_part(report) + "; who left, and which tests were left out: " + kToFillIn;
     const int broken_off =
         report.people_without - report.withdrawn_people - report.excluded_people - report.replaced_people;
     const std::int64_t analysed = report.trials + report.forced_choices;
@@ -124,9 +134,9 @@ std::string stard_precision(const Report& report) {
         if (there) out += (out.empty() ? "" : "; ") + std::string(text);
     };
     in_table(!report.choices.empty(), "choices: choices.tsv");
-    in_table(!report.staircases.empty(), "staircases: staircases.tsv");
+    if (!out.empty()) out += ", intervals at " + files::short_number(100.0 * report.options.bootstrap.level) + " %";
+    in_table(!report.staircases.empty(), "staircases: staircases.tsv, credible intervals at 95 %");
     if (out.empty()) return out;
-    out += ". Intervals at " + files::short_number(100.0 * report.options.bootstrap.level) + " %";
     if (!report.pairs.empty()) return out + "; comparisons in pairs.tsv";
     return report.choice_pairs.empty() ? out : out + "; comparisons in choice_pairs.tsv";
 }
@@ -147,19 +157,21 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
     form.item("6", "who could take part");
     form.item("7", "how participants were found");
     form.item("8", "where and when (places, dates)",
-              "dates are in ..._performance.json of each trial on the screen, but of trials by hand and of choices "
-              "there are none; "
-              "places: " +
-                  kToFillIn);
+              known_or_open(protocol,
+                            "dates are in ..._performance.json of each trial on the screen, but of trials by hand and "
+                            "of choices there are none; places: " +
+                                kToFillIn));
     form.item("9", "consecutive, random or convenience series");
-    form.item("10a", "index test, so that it can be repeated", index_tests(protocol));
+    form.item("10a", "index test, so that it can be repeated", index_tests(report, protocol));
     form.item("10b", "reference standard, so that it can be repeated",
-              by_task(tasks, "the map of the nodules of each trial's tissue, known by construction (..._settings.json)",
+              by_task(tasks,
+                      "the nodules in the map of each trial's tissue (..._settings.json): placed ones are known by "
+                      "construction, detected ones are those that a computation found in the map",
                       "the nodules of the phantom: " + kToFillIn,
                       "which of both surfaces is stiffer, known by construction"));
     form.item("11", "why this reference standard",
-              by_task(tasks, "the places of the nodules are known exactly", kToFillIn,
-                      "both stiffnesses are known; of real samples: " + kToFillIn));
+              by_task(tasks, "the places of placed nodules are known exactly; of detected ones: " + kToFillIn,
+                      kToFillIn, "both stiffnesses are known; of real samples: " + kToFillIn));
     form.item("12a", "cut-offs of the index test, and whether fixed before",
               by_task(tasks,
                       "a mark within the nodule's diameter or 8 mm of its axis, whichever is larger, is a hit; "
@@ -185,45 +197,54 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
     form.item(
         "16", "how missing data were handled",
         "nothing was filled in; comparisons are of participants with both conditions, others are counted as left out");
+    const bool mixed = !only_choices(report) && report.mixed.status.empty();
+    const std::string spreads = mixed ? "spreads of people and nodules in the mixed model" : "";
+    const std::string groups = report.groups.empty() ? "" : "groups compared in groups.tsv";
     form.item("17", "analyses of variability, planned or exploratory",
-              only_choices(report) ? report.groups.empty() ? "none" : "groups compared in groups.tsv"
-              : report.groups.empty()
-                  ? "spreads of people and nodules in the mixed model; else none"
-                  : "groups compared in groups.tsv; spreads of people and nodules in the mixed model");
+              spreads.empty() && groups.empty() ? "none"
+                                                : groups + (groups.empty() || spreads.empty() ? "" : "; ") + spreads);
     form.item("18", "sample size and how it was chosen", stard_sample(report, protocol));
 }
 
-void stard_results(const Report& report, StardForm& form) {
+void stard_results(const Report& report, const Protocol* protocol, StardForm& form) {
     form.section("Results");
-    form.item("19", "flow of participants, with a diagram", stard_flow(report));
-    form.item("20", "who they were",
-              "participants.tsv, and ratings.tsv where questions were asked; summary: " + kToFillIn);
+    form.item("19", "flow of participants, with a diagram", stard_flow(report, protocol));
+    form.item(
+        "20", "who they were",
+        known_or_open(protocol, "participants.tsv, and ratings.tsv where questions were asked; summary: " + kToFillIn));
     form.item("21a", "how severe the target condition was",
-              only_choices(report)
+              !protocol ? kToFillIn
+              : only_choices(report)
                   ? "the levels that were compared are in the protocol; what else the samples were: " + kToFillIn
                   : "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
     form.item("21b", "what else was there in those without it");
-    form.item("22", "time and events between test and reference", "none: the reference is part of the tissue");
+    form.item("22", "time and events between test and reference",
+              known_or_open(protocol, "none: the reference is part of the tissue"));
     form.item("23", "cross table of test and reference", stard_cross(report));
     form.item("24", "estimates with their precision", stard_precision(report));
     form.item("25", "harm from test or reference");
 }
 
-void stard_simulation(const Protocol* protocol, StardForm& form) {
+void stard_simulation(const Report& report, const Protocol* protocol, StardForm& form) {
     form.section("Simulation-based research (Cheng et al. 2016)");
     form.item("S1", "orientation of participants to the simulator",
               !protocol ? kToFillIn
-                        : whole(protocol->practice_trials) +
-                              " practice trials before each condition; instructions in "
-                              "protocol.json; what was said besides: " +
-                              kToFillIn);
+                        : (protocol->practice_trials == 0
+                               ? std::string("no practice")
+                               : whole(protocol->practice_trials) + " practice trials " + practice_comes(*protocol)) +
+                              "; instructions in protocol.json; what was said besides: " + kToFillIn);
     form.item("S2", "simulator: make, model, functions",
-              "Palpa; devices in ..._settings.json of each trial; screen and pen: " + kToFillIn);
+              known_or_open(protocol,
+                            std::string("Palpa") +
+                                (has_settings(report, protocol) ? "; devices in ..._settings.json of each trial" : "") +
+                                "; screen and pen: " + kToFillIn));
     form.item("S3", "surroundings of the simulation");
     form.item("S4", "event: scenario, duration, what was given to participants",
               known_or_open(protocol && protocol->time_limit_s > 0.0,
-                            "tests of at most " + files::short_number(protocol ? protocol->time_limit_s : 0.0) + " s"));
-    form.item("S5", "feedback and instruction", known_or_open(protocol, "after practice only"));
+                            "tests of at most " + files::short_number(protocol ? protocol->time_limit_s : 0.0) + " s" +
+                                (tasks_in(protocol).choices ? ", of a pair for each surface" : "")));
+    form.item("S5", "feedback and instruction",
+              known_or_open(protocol, protocol && protocol->practice_trials > 0 ? "after practice only" : "none"));
     form.item("S6", "pilot");
     form.item("S7", "limits of the simulation against real palpation");
 }
@@ -237,11 +258,13 @@ std::string stard_checklist(const Report& report, const Protocol* protocol) {
     form.item("2", "structured abstract");
     form.item("3", "background, intended use and role of the test");
     form.item("4", "aims and hypotheses",
-              report.primary ? "primary comparison: " + std::string(name_of(report.primary->stated.quantity)) + ", " +
-                                   report.primary->stated.sides[0] + " against " + report.primary->stated.sides[1]
-                             : kToFillIn);
+              report.primary
+                  ? "primary comparison: " + std::string(name_of(report.primary->stated.quantity)) + ", " +
+                        report.primary->stated.sides[0] + " against " + report.primary->stated.sides[1] +
+                        (report.primary->stated.of_groups ? ", under " + report.primary->stated.condition : "")
+                  : kToFillIn);
     stard_methods(report, protocol, form);
-    stard_results(report, form);
+    stard_results(report, protocol, form);
     form.section("Discussion and other information");
     form.item(
         "26", "limits: bias, uncertainty, how far results carry over",
@@ -250,7 +273,7 @@ std::string stard_checklist(const Report& report, const Protocol* protocol) {
     form.item("28", "registration", protocol ? protocol->about.registration : "");
     form.item("29", "where the protocol is", known_or_open(protocol, "protocol.json in the folder of the logs"));
     form.item("30", "funding and its role", protocol ? stard_list(protocol->about.funding) : "");
-    stard_simulation(protocol, form);
+    stard_simulation(report, protocol, form);
     return std::string("# Checklist: STARD 2015") + (report.simulated ? " (SIMULATED participants)" : "") +
            "\n\nFilled in from protocol and logs as far as they know; the rest is marked " + kToFillIn +
            ". Items in our words; the statement is Bossuyt et al., BMJ 351 (2015) h5527.\n" + form.text();

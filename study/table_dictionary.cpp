@@ -167,7 +167,7 @@ constexpr std::array kColumnTexts{
     // staircases
     ColumnText{"", "method", "weighted-up-down or quest-plus"},
     ColumnText{"", "trials", "answers of the staircase"},
-    ColumnText{"", "reversals", "how often the level turned"},
+    ColumnText{"", "reversals", "how often a right answer followed a wrong one, or a wrong one a right one"},
     ColumnText{"", "target", "share of right answers at the level where weighted up-down settles"},
     ColumnText{"", "threshold_percent",
                "geometric mean level from the second reversal on, as difference from the reference; below 0: softer",

@@ -34,6 +34,16 @@ inline std::string p_text(double p) {
 inline std::string whole(std::int64_t value) { return std::to_string(value); }
 inline std::string number_of(std::int64_t n, const char* what) { return whole(n) + " " + what + (n == 1 ? "" : "s"); }
 
+// A text of somebody's as a cell of a Markdown table: bars would be borders, and a line break the end of the table.
+inline std::string markdown_cell(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '|') out += '\\';
+        out += c == '\n' || c == '\r' ? ' ' : c;
+    }
+    return out;
+}
+
 inline void add_interval(const std::optional<Interval>& ci, std::vector<std::string>& row) {
     row.push_back(ci ? share_text(ci->low) : kNone);
     row.push_back(ci ? share_text(ci->high) : kNone);

@@ -11,6 +11,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/generate/generate.h"
+#include "study/table_text.h"
 
 namespace palpa::app {
 namespace {
@@ -78,8 +79,8 @@ std::string markdown(const study::Protocol& protocol, const PowerOptions& option
             return std::isfinite(x) ? files::short_number(std::round(1e4 * x) / 1e4) : "n/a";
         };
         out += "| " + files::short_number(one.effect) + " | " + files::short_number(one.noise) + " | " +
-               std::to_string(one.participants) + " | " + one.what.quantity + " | " + one.what.a + " | " +
-               (one.what.b.empty() ? "n/a" : one.what.b) + " | " + one.what.method +
+               std::to_string(one.participants) + " | " + one.what.quantity + " | " + study::markdown_cell(one.what.a) +
+               " | " + (one.what.b.empty() ? "n/a" : study::markdown_cell(one.what.b)) + " | " + one.what.method +
                (one.what.label.empty() ? "" : " (" + one.what.label + ")") + " | " + rejected_text(one) + " | " +
                coverage_text(one, options.runs) + " | " + number(one.mean_estimate) + " | " + number(one.truth) +
                " |\n";

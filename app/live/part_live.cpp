@@ -54,12 +54,13 @@ std::optional<bool> holds_edits(const fs::path& copy, const fs::path& design) {
 
 // Which of a design's copies a file is: 1 for NAME-edited.json, 2 for NAME-edited-2.json; 0 for other files.
 int number_of_copy(const fs::path& file, const fs::path& design) {
-    const std::string name = file.filename().string(), begin = design.stem().string() + "-edited", end = ".json";
-    if (name == begin + end) return 1;
-    if (name.size() < begin.size() + 1 + end.size() || !name.starts_with(begin + "-") || !name.ends_with(end)) return 0;
-    const std::string number = name.substr(begin.size() + 1, name.size() - begin.size() - 1 - end.size());
-    const bool counts = number.size() < 9 && number.find_first_not_of("0123456789") == std::string::npos;
-    return counts && !number.empty() ? std::stoi(number) : 0;
+    const std::string name = file.filename().string(), begin = design.stem().string() + "-edited";
+    if (name == begin + ".json") return 1;
+    int number = 0, end = 0;
+    const bool is_copy = name.starts_with(begin) &&
+                         std::sscanf(name.c_str() + begin.size(), "-%6d.json%n", &number, &end) == 1 &&
+                         begin.size() + static_cast<std::size_t>(end) == name.size();
+    return is_copy ? std::max(number, 0) : 0;
 }
 
 // The files of a design's edits: the one that was changed last of those that hold any, empty if none does, and the next.

@@ -19,6 +19,7 @@ TEST_CASE("names: words for a missing value, quotes and tabs are refused, others
         CHECK_FALSE(is_code(code));
     }
     CHECK(names_a_sum("Total"));
+    CHECK_FALSE(is_code("all"));
     CHECK_FALSE(names_a_sum("total force"));
     CHECK(has_outer_space(" a"));
     CHECK(has_outer_space("a\xC2\xA0"));

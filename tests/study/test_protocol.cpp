@@ -109,6 +109,10 @@ TEST_CASE("protocol: what is wrong is named with its key") {
     CHECK(refusal_of_protocol(with(kPen)).empty());
     CHECK(contains(refusal_of_protocol(with("")), "conditions: found nothing, expected one condition"));
     CHECK(contains(refusal_of_protocol(with(kPen + "," + kPen)), "conditions[1].id: found 'pen' a second time"));
+    CHECK(contains(refusal_of_protocol(with(R"({"id": "all", "modality": "pen", "scene": "x.json"})")),
+                   "conditions[0].id: found 'all', expected a name that no row of sums has"));
+    CHECK(contains(refusal_of_protocol(with(kPen + R"(], "practice": {"trials": 0, "time_limit_s": 5}, "ratings": [)")),
+                   "practice.time_limit_s: found a value, expected none: there are no practice trials"));
     CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "nose", "scene": "s"})")),
                    "conditions[0].modality: found 'nose'"));
     CHECK(

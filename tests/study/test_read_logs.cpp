@@ -354,7 +354,7 @@ TEST_CASE("read logs: a group that is not the plan's is refused, where there is 
 
 TEST_CASE("read logs: tests of a participant who withdrew the data are told apart from excluded ones") {
     const TemporaryFolder folder;
-    find_study(folder / "log");
+    const Protocol protocol = find_study(folder / "log");
     withdraw(folder / "log", "01", Withdrawal::takes_data);
     const Report report = make_report(read_study(folder / "log"), {});
     CHECK(report.excluded_trials == 2);
@@ -364,7 +364,7 @@ TEST_CASE("read logs: tests of a participant who withdrew the data are told apar
     CHECK_FALSE(contains(text, "by the experimenter's decision"));
     CHECK(contains(text, "1 more participant has logs, but no test in the tables"));
     const std::string others = std::to_string(report.participants), all = std::to_string(report.participants + 1);
-    const std::string form = stard_checklist(report, nullptr);
+    const std::string form = stard_checklist(report, &protocol);
     CHECK(contains(form, all + " took part, " + others + " are analysed (1 withdrew their data, 0 left out"));
     CHECK(contains(form, "and 2 left out (2 of them withdrawn)"));
 }

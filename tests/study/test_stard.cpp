@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "study/observations.h"
+#include "study/preregistration.h"
 #include "study/stard.h"
 #include "tests/error_message.h"
 
@@ -20,6 +21,8 @@ TEST_CASE("STARD checklist: all 30 items and those of simulations stand there, f
     CHECK(contains(form, "Touchpad: sensitivity 0.5167"));
     CHECK(contains(form, "Wilson, ignores clustering)"));
     CHECK(contains(form, "| 13a | what those who did the index test knew of the reference | TO BE FILLED IN |"));
+    for (const char* of_logs : {"performance.json", "settings.json", "participants.tsv", "withdrew", "interrupted"})
+        CHECK_FALSE(contains(form, of_logs));
 }
 
 TEST_CASE("STARD checklist: it describes the trials that the study has") {
@@ -54,4 +57,22 @@ TEST_CASE("STARD checklist: the protocol answers what it states, and simulated p
                    "1 without a finished test)"));
     CHECK(contains(form, "NO PERSON TOOK PART"));
     CHECK(contains(form, "tests of at most 60 s"));
+}
+
+TEST_CASE("STARD checklist and preregistration: bars and line breaks of a protocol's texts stay in their cells") {
+    Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/effects.json");
+    protocol.conditions[0].id = "only | one";
+    protocol.conditions[0].title = "with\ntwo lines";
+    protocol.stopping_rule = "1 | done";
+    const std::string form = stard_checklist(Report{}, &protocol), sheet = preregistration_sheet(protocol, {});
+    CHECK(contains(form, "only \\| one: pen"));
+    CHECK(contains(form, "Rule for stopping: 1 \\| done"));
+    CHECK(contains(sheet, "| only \\| one | with two lines | "));
+    CHECK(contains(sheet, "1 \\| done"));
+    CHECK(contains(sheet, "no test: it needs several trials"));
+    protocol.planned_participants = 1;
+    protocol.repeats = 2;
+    const std::string other = preregistration_sheet(protocol, {});
+    CHECK(contains(other, "`palpa study power` takes no single participant"));
+    CHECK(contains(other, "Obuchowski and Rockette"));
 }
