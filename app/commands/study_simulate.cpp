@@ -9,6 +9,7 @@
 #include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "app/study/simulate.h"
+#include "files/input_error.h"
 #include "files/json.h"
 #include "files/regular_file.h"
 #include "files/text.h"
@@ -34,6 +35,9 @@ void simulate(const SimulateArguments& arguments) {
     options.jobs = std::min(options.participants, arguments.jobs > 0 ? arguments.jobs : 2 * std::max(1, cores));
     files::check_output_folder(arguments.output);
     const study::Protocol protocol = study::read_protocol(arguments.protocol);
+    if (options.practice && protocol.practice_trials == 0)
+        throw files::bad_input("--practice", "", arguments.protocol + ", which has no practice trials",
+                               "a protocol with practice");
     const SimulateResult result = simulate_study(protocol, options);
     const double MB_per_s = result.wall_s > 0.0 ? result.written_MB / result.wall_s : 0.0;
     if (arguments.json) {

@@ -189,6 +189,7 @@ TEST_CASE(
     const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
     const std::string log = (folder / "log").string();
     const std::string call = "simulate " + effects + " --participants 24 --seed 1 -o " + log;
+    refused(call + " --practice", "--practice: found");
     const Called called = study(call + " --json");
     REQUIRE(called.status == 0);
     const Json done = parse_json(called.out, "stdout");
