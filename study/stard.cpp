@@ -178,7 +178,7 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
                       "every mark counts, whatever its confidence; fixed by the program before the study",
                       "what the experimenter took for found: " + kToFillIn, "none: one of both surfaces is chosen"));
     form.item("12b", "cut-offs of the reference standard",
-              by_task(tasks, "none: a nodule is there or not", "none: a nodule is there or not",
+              by_task(tasks, "none of placed nodules: they are there or not", "none: a nodule is there or not",
                       "none: one surface is stiffer"));
     const std::string told =
         protocol && (tasks.on_screen || tasks.by_hand)
