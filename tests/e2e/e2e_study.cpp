@@ -171,7 +171,7 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
     script.wait(0.5);
     script.key(kEnter);  // the trial by hand
     script.key(kT);
-    script.wait(1.0);
+    script.wait(3.0);
     script.key(kT);
     script.key(kEnter);  // keep: A missed
     script.wait(0.5);
@@ -188,7 +188,7 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
     CHECK(seen.notes.empty());
     REQUIRE(seen.trials.size() == 2);
     CHECK(seen.trials[0].path_m > 0.01);
-    CHECK(seen.trials[1].duration_s > 0.0);  // from the first T to the second; a busy computer takes both at once
+    CHECK(seen.trials[1].duration_s > 0.9);  // a busy computer may take the first T two seconds late
     CHECK(read_text(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_marks.tsv").find("\t4\t") !=
           std::string::npos);
     const Json settings = read_json(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_settings.json");
