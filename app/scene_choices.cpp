@@ -7,6 +7,7 @@
 #include "app/assets.h"
 #include "files/input_error.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 #include "scene/tissue.h"
 
 namespace palpa::app {
@@ -14,22 +15,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string name_in(const fs::path& file) {
+// The name that a file gives itself, else the other one. A file that cannot be read is listed too: to choose it says what is
+// wrong, and a scene that somebody has just edited does not vanish.
+std::string name_in(const fs::path& file, const std::string& other) {
     try {
         const files::Json json = files::read_json(file);
         if (json.contains("name") && json["name"].is_string()) return json["name"];
     } catch (const std::exception&) {
-        return {};  // another file of the folder; choosing it would say what is wrong
     }
-    return file.stem().string();
+    return other;
 }
 
 void add_choices(const fs::path& folder, std::vector<Choice>& out) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (entry.path().extension() != ".json") continue;
-        const std::string name = name_in(entry.path());
-        if (!name.empty()) out.push_back({name, entry.path().string()});
+    for (const fs::path& entry : files::listed_entries(folder)) {
+        if (entry.extension() == ".json") out.push_back({name_in(entry, entry.stem().string()), entry.string()});
     }
 }
 
@@ -91,11 +90,9 @@ std::vector<Choice> profile_choices() { return choices("profiles"); }
 std::vector<Choice> map_choices() {
     std::vector<Choice> out;
     for (const fs::path& folder : {assets_folder() / "maps", user_folder() / "maps"}) {
-        std::error_code error;
-        for (const auto& entry : fs::directory_iterator(folder, error)) {
-            if (entry.path().extension() != ".map") continue;
-            const std::string name = name_in(entry.path() / "map.json");
-            if (!name.empty()) out.push_back({name, entry.path().string()});
+        for (const fs::path& entry : files::listed_entries(folder)) {
+            if (entry.extension() == ".map")
+                out.push_back({name_in(entry / "map.json", entry.stem().string()), entry.string()});
         }
     }
     std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });

@@ -1,5 +1,6 @@
 #include "files/regular_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -38,20 +39,35 @@ bool is_same(const struct stat& a, const fs::path& b) {
 bool is_in(const struct stat& file, const fs::path& input) {
     std::error_code error;
     if (!fs::is_directory(input, error)) return is_same(file, input);
-    for (fs::directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error)) {
-        if (is_same(file, entry->path())) return true;
-    }
-    return false;
+    const std::vector<fs::path> entries = listed_entries(input);
+    return std::any_of(entries.begin(), entries.end(), [&](const fs::path& entry) { return is_same(file, entry); });
 }
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 void check_folder_of(const fs::path& path) {
     std::error_code error;
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    const fs::path folder = folder_of(path);
     if (!fs::is_directory(folder, error))
         throw bad_input(path.string(), "", "no folder " + folder.string(), "a folder that is there");
 }
 
+void check_may_write(const fs::path& folder, const fs::path& path) {
+    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+        throw bad_input(path.string(), "", "the folder " + folder.string() + ", to which nothing can be written",
+                        "one that may be written to");
+}
+
 }  // namespace
+
+std::vector<fs::path> listed_entries(const fs::path& folder) {
+    std::vector<fs::path> out;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        out.push_back(entry->path());
+    std::sort(out.begin(), out.end());
+    return out;
+}
 
 std::string_view irregular_kind(const fs::path& path) {
     struct stat status {};
@@ -102,8 +118,9 @@ fs::path output_target(const fs::path& path) {
 }
 
 void check_output(const fs::path& path, const std::vector<fs::path>& inputs) {
-    output_target(path);
+    const fs::path target = output_target(path);
     check_folder_of(path);
+    check_may_write(folder_of(target), path);
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) return;
     for (const fs::path& input : inputs) {
@@ -131,6 +148,9 @@ void check_output_folder(const fs::path& folder, const std::vector<fs::path>& in
         throw bad_input(folder.string(), "", "no folder but " + std::string(kind.empty() ? "a file" : kind),
                         "a folder or a new name");
     }
+    fs::path there = folder;
+    while (there.has_relative_path() && !fs::exists(there, error)) there = there.parent_path();
+    check_may_write(there.empty() ? "." : there, folder);
     if (!fs::exists(status)) return;
     for (const std::string& name : names) check_output(folder / name, inputs);
 }

@@ -15,6 +15,10 @@ namespace palpa::files {
 // links.
 std::string_view irregular_kind(const std::filesystem::path& path);
 
+// Lists a folder for a screen, in the order of the names; of one that is not there, cannot be read or fails meanwhile, what
+// could be read. Never throws for the disk.
+std::vector<std::filesystem::path> listed_entries(const std::filesystem::path& folder);
+
 // A regular file, open for reading. The constructor throws InputError, without waiting, if the file is not a regular
 // one or cannot be read.
 class InputFile {
@@ -41,8 +45,8 @@ void check_input(const std::filesystem::path& path);
 // Throws InputError if it exists and is not a regular file.
 std::filesystem::path output_target(const std::filesystem::path& path);
 
-// Checks, before any work, whether a result may go to `path`: its folder must exist, and `path` must be a regular file
-// or a free name. It must not be one of `inputs` under any name (nor a file in an input that is a folder), and not the
+// Checks, before any work, whether a result may go to `path`: its folder must exist and may be written to, and `path` must be
+// a regular file or a free name. It must not be one of `inputs` under any name (nor a file in an input that is a folder), and not the
 // file to which standard output or standard error go. Throws InputError.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 

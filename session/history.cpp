@@ -8,6 +8,7 @@
 
 #include "files/append_file.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 
 namespace palpa::session {
 namespace {
@@ -202,13 +203,13 @@ KeptTrial read_kept_trial(const fs::path& file) {
         json.fail("tissue_mm", "a size that is not > 0", "x, y, width, height");
     t.known_depth_mm = json.number("known_depth_mm", files::kNotNegative);
     t.clock_s = json.number("clock_s", files::kNotNegative);
-    t.found = json.integer("found", 0, kMost);
     t.false_positives = json.integer("false_positives", 0, kMost);
     t.scored = json.boolean("scored", true);
     const std::vector<double> coverage = json.numbers("coverage", 3, kShare);
     std::copy(coverage.begin(), coverage.end(), t.coverage);
     t.max_force_N = json.number("max_force_N", files::kNotNegative);
     read_nodules(json, t);
+    t.found = json.integer("found", 0, static_cast<int>(t.nodules.size()));
     read_marks(json, t);
     read_path(json, t);
     json.finish();
@@ -218,10 +219,9 @@ KeptTrial read_kept_trial(const fs::path& file) {
 std::vector<fs::path> history_files(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        if (is_kept_trial(entry.path()) && !entry.is_directory(error)) files.push_back(entry.path());
+    for (const fs::path& entry : files::listed_entries(folder)) {
+        if (is_kept_trial(entry) && !fs::is_directory(entry, error)) files.push_back(entry);
     }
-    std::sort(files.begin(), files.end());
     return files;
 }
 

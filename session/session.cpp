@@ -323,7 +323,7 @@ void take_device_press(const PressMoment& press, double now_s, Session& session)
 }
 
 void note_time(double now_s, Session& session) {
-    if (session.trial.began) session.trial.now_s = std::max(session.trial.now_s, now_s);
+    if (session.trial.began && !session.trial.finished) session.trial.now_s = std::max(session.trial.now_s, now_s);
 }
 
 void note_event(std::string_view trial_type, double now_s, Session& session) {

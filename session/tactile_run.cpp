@@ -36,6 +36,16 @@ void choose_input(std::span<const devices::PressRow> press, tactile::TactilePlan
     plan.input = std::isfinite(press.front().force_N) ? tactile::InputKind::force : tactile::InputKind::depth;
 }
 
+void choose_input(std::span<const DeviceRow> rows, tactile::TactilePlan& plan) {
+    if (plan.options.leads == scene::Leads::arm) return;
+    const bool by_force = std::any_of(rows.begin(), rows.end(), [](const DeviceRow& row) {
+        PenContact pen;
+        if (row.kind == DeviceRowKind::hand_over) read_device_row(row, pen);
+        return pen.normal_N > 0.0;
+    });
+    plan.input = by_force ? tactile::InputKind::force : tactile::InputKind::depth;
+}
+
 const char* fault_words(devices::Fault fault, const Silent& silent) {
     if (fault == devices::Fault::none) return "";
     if (fault != devices::Fault::silence) return devices::text(fault).data();

@@ -38,8 +38,10 @@ struct TactileLoop {
 // The press at a time as a contact that can be handed over. A press by force is one of tactile::InputKind::force.
 PenContact contact_of(const devices::PressRow& row) noexcept;
 
-// What the loop reads: depth or force, by the scene's arm, or by what a press that leads brings.
+// What the loop reads: depth or force, by the scene's arm, or by what a press that leads brings, or what recorded rows of
+// one brought.
 void choose_input(std::span<const devices::PressRow> press, tactile::TactilePlan& plan);
+void choose_input(std::span<const DeviceRow> rows, tactile::TactilePlan& plan);
 
 // What a run is given beside the plan.
 struct TactileRunOptions {
@@ -55,6 +57,7 @@ struct TactileResult {
     tactile::MismatchMeter mismatch;
     DeviceReport loop;
     bool logged = true;  // false: a log could not be written to its end
+    bool cut = false;    // a person ended it before the press was over
 };
 
 // One process, no waiting: both simulators are models in this process (tactile/virtual_port.h).

@@ -188,6 +188,7 @@ TactileResult run_live_press(std::shared_ptr<const tactile::TactilePlan> plan, c
         take_all(thread, sink, keeps);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    sink.result.cut = !thread.finished();
     thread.end();
     take_all(thread, sink, keeps);
     take_devices(thread, *plan, sink);

@@ -70,6 +70,14 @@ TangibleBearing bearing_of(const tangible::SoftDevice& device, const tangible::B
     return out;
 }
 
+// "mixed": what the device's wires say of each drive.
+bool is_told_length(const TangiblePlan& plan, std::size_t actuator) {
+    const tangible::SoftDevice& device = plan.model->device;
+    if (device.actuators[actuator].kind == tangible::ActuatorKind::cavity) return false;
+    if (plan.loop.command != tangible::CommandKind::mixed) return plan.loop.command == tangible::CommandKind::position;
+    return device.wires && device.wires->channels.at(actuator).drive == devices::Drive::length;
+}
+
 }  // namespace
 
 std::vector<int> surface_nodes(const TangiblePlan& plan) {
@@ -91,6 +99,7 @@ TangibleBody body_of(const TangiblePlan& plan, const std::string& rendered) {
     body.direction = point_of(device.effector.direction);
     body.effector_m = point_of(device.effector.centre_m);
     body.effector_radius_m = device.effector.radius_m;
+    for (std::size_t j = 0; j < body.actuators.size(); ++j) body.actuators[j].by_length = is_told_length(plan, j);
     body.rate_Hz = plan.loop.rate_Hz;
     body.rendered = rendered;
     body.algorithm = tangible::kFidelityNames[static_cast<std::size_t>(plan.loop.inverse.fidelity)];
@@ -124,7 +133,7 @@ void fill_moment(const TickRecord& record, const TangibleSink& sink, double rate
     out.iterations = tick.iterations;
     out.converged = tick.converged;
     out.actuation = tick.actuation;
-    out.command = tick.length;
+    out.length = tick.length;
     out.stopped = tick.fault == tangible::TickFault::stopped;
     const bool by_guard = out.stopped && record.guard != devices::Fault::none;
     out.fault = by_guard ? devices::text(record.guard).data() : tangible::text_of(tick.fault);

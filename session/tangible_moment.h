@@ -17,8 +17,9 @@ using PointOfDevice = std::array<float, 3>;  // m, in the frame of the device fi
 
 struct TangibleActuator {
     std::string name;
-    bool cavity = false;  // a pressure in Pa, whose command is a volume in m3; else a cable: N, and a length in m
-    double lower = 0.0;   // N or Pa
+    bool cavity = false;     // a pressure in Pa; else a cable: N, and a length in m
+    bool by_length = false;  // the drive is told the cable's length; else force or pressure
+    double lower = 0.0;      // N or Pa
     double upper = 0.0;
     std::vector<PointOfDevice> guides;  // of a cable, from its anchor's side on
     std::int32_t anchor = -1;  // of a cable: index of the node, of those of TangibleShape, nearest to its anchor
@@ -76,7 +77,7 @@ struct TangibleMoment {
     bool converged = true;
 
     Actuators actuation{};  // N or Pa
-    Actuators command{};    // m or m3, as it is sent when the device is driven by position
+    Actuators length{};     // m, of cables
 
     const char* fault = "";  // static text: why the device is relaxed or its last command held; "" if it is driven
     bool held = false;       // the last valid command is repeated

@@ -60,6 +60,7 @@ struct TangibleResult {
     devices::Fault guard = devices::Fault::none;  // why the guard of a real device has relaxed it
     GuardFigures guarded;
     bool logged = true;  // false: a log could not be written to its end
+    bool cut = false;    // a person ended it before the press was over
 };
 
 // In virtual time, on a plant: the same options give the same log, byte for byte.

@@ -93,6 +93,7 @@ class TangibleThread {
         if (thread_.joinable()) thread_.join();
     }
     bool finished() const { return finished_; }
+    bool has_end() const { return std::isfinite(seconds_); }  // else it goes on until somebody ends it
     devices::RigReport guard() const { return rig_ ? rig_->report() : devices::RigReport{}; }  // once it has ended
     bool take(TickRecord& out) { return ring_->pop(out); }
     bool take(TangibleShape& out) { return shapes_->take(out); }
@@ -186,6 +187,7 @@ TangibleResult run_tangible_live(std::shared_ptr<const TangiblePlan> plan, const
         take_all();
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    sink.result.cut = !thread.finished() && thread.has_end();
     thread.end();
     take_all();
     sink.lost_ticks = thread.lost_ticks();

@@ -204,11 +204,15 @@ PeopleTest test_of_primary(const Observations& seen, const PrimaryComparison& st
         const std::string& name = stated.of_groups ? stated.condition : stated.sides[s];
         const int condition = index_in(seen.conditions, name);
         const int group = stated.of_groups ? index_in(seen.groups, stated.sides[s]) : -1;
-        if (condition < 0 || (stated.of_groups && group < 0))
-            return unknown_test("cannot be computed, because no log is of '" +
-                                (condition < 0 ? name : stated.sides[s]) + "'");
+        const auto unknown = [&](const std::string& missing) {
+            PeopleTest test = unknown_test("cannot be computed, because no log of '" + missing + "' counts");
+            if (stated.of_groups) test.design = Design::between;
+            return test;
+        };
+        if (condition < 0) return unknown(name);
+        if (stated.of_groups && group < 0) return unknown(stated.sides[s]);
         sides[s] = people_of(seen, condition, stated.quantity);
-        if (sides[s].empty()) return unknown_test("cannot be computed, because no log of '" + name + "' counts");
+        if (sides[s].empty()) return unknown(name);
         if (stated.of_groups) sides[s] = of_group(seen, sides[s], group);
     }
     return compare_people(sides[0], sides[1], average_of(stated.quantity), people_options(options, true));

@@ -34,6 +34,24 @@ bool any_pairs(const Protocol& protocol, bool pairs) {
     return false;
 }
 
+// The test of free-response figures (obuchowski_rockette.h) takes those who judge several cases under every condition.
+std::string free_response_test(const Protocol& protocol) {
+    std::vector<std::size_t> searched;
+    for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
+        if (!compares(task_of(protocol, i))) searched.push_back(i);
+    }
+    const auto crosses = [&](const Group& group) {
+        return std::all_of(searched.begin(), searched.end(), [&](std::size_t i) {
+            return std::find(group.conditions.begin(), group.conditions.end(), i) != group.conditions.end();
+        });
+    };
+    if (searched.size() < 2) return "no test: it needs several conditions";
+    if (protocol.repeats < 2) return "no test: it needs several trials of a person under each condition";
+    if (!protocol.groups.empty() && std::none_of(protocol.groups.begin(), protocol.groups.end(), crosses))
+        return "no test: it needs people who take part under every condition";
+    return "people and cases random (Obuchowski and Rockette, jackknife)";
+}
+
 bool any_scene(const Protocol& protocol) {
     return std::any_of(protocol.conditions.begin(), protocol.conditions.end(),
                        [](const Condition& one) { return !one.scene.empty(); });
@@ -47,7 +65,8 @@ std::string study_part(const Protocol& protocol, const SheetOptions& options) {
            sheet_row("seed of all draws", std::to_string(protocol.seed)) +
            sheet_row("program", options.program + ", orders of version " + std::to_string(kOrdersVersion)) +
            sheet_row("authors", sheet_value(sheet_list(about.authors))) +
-           sheet_row("registration", sheet_value(about.registration)) +
+           sheet_row("registration", about.registration.empty() ? "not registered before this sheet was made"
+                                                                : sheet_value(about.registration)) +
            sheet_row("ethics approvals", sheet_value(sheet_list(about.ethics_approvals))) +
            sheet_row("funding", sheet_value(sheet_list(about.funding))) +
            sheet_row("license of the data", sheet_value(about.license));
@@ -152,16 +171,13 @@ std::string analysis_part(const Protocol& protocol) {
     };
     if (searched(true)) out += sheet_row("found nodules and false marks by hand", "as the experimenter types them in");
     if (searched(false)) {
-        out +=
-            sheet_row(
-                "a mark is a hit",
-                "within the nodule's diameter or 8 mm of its axis, whichever is larger; as many nodules as possible "
-                "are found, each by one mark") +
-            sheet_row("several marks on one nodule", "one hit; the highest confidence counts as its rating") +
-            sheet_row("free response",
-                      std::string("wAFROC1, since each condition has one tissue, where that has nodules; ") +
-                          (protocol.repeats > 1 ? "people and cases random (Obuchowski and Rockette, jackknife)"
-                                                : "no test: it needs several trials of a person under each condition"));
+        out += sheet_row(
+                   "a mark is a hit",
+                   "within the nodule's diameter or 8 mm of its axis, whichever is larger; as many nodules as possible "
+                   "are found, each by one mark") +
+               sheet_row("several marks on one nodule", "one hit; the highest confidence counts as its rating") +
+               sheet_row("free response", "wAFROC1, since each condition has one tissue, where that has nodules; " +
+                                              free_response_test(protocol));
     }
     if (any_pairs(protocol, false))
         out += sheet_row(
@@ -265,6 +281,7 @@ std::vector<std::string> missing_statements(const Protocol& protocol) {
     need(!protocol.about.authors.empty(), "dataset.authors: who makes the study");
     need(!protocol.about.ethics_approvals.empty(), "dataset.ethics_approvals: committee and number");
     need(!protocol.about.funding.empty(), "dataset.funding: who pays for it");
+    need(!protocol.about.license.empty(), "dataset.license: how the data may be used");
     return out;
 }
 

@@ -84,4 +84,12 @@ void refuse_ignored_keys(const files::JsonReader& json, const Protocol& protocol
     check_items(json, "ratings", protocol.ratings);
 }
 
+void refuse_mixed_ratings(const Protocol& protocol) {
+    const auto several = [](const Group& group) { return group.conditions.size() > 1; };
+    const bool mixed = protocol.trial_order != TrialOrder::blocked &&
+                       std::any_of(protocol.groups.begin(), protocol.groups.end(), several);
+    if (protocol.ratings.empty() || !mixed) return;
+    throw files::bad_input(protocol.file.string(), "ratings", "ratings of conditions whose trials are mixed", "none");
+}
+
 }  // namespace palpa::study

@@ -13,4 +13,8 @@ bool any_task(const Protocol& protocol, TaskKind task);
 // no group. `json`: the protocol's file.
 void refuse_ignored_keys(const files::JsonReader& json, const Protocol& protocol);
 
+// Throws InputError for ratings of conditions whose trials are mixed: ratings are of a condition whose trials have just been
+// done. For what comes before a study; the logs of an older one are read nevertheless.
+void refuse_mixed_ratings(const Protocol& protocol);
+
 }  // namespace palpa::study

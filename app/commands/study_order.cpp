@@ -9,6 +9,7 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "study/order_balance.h"
+#include "study/protocol_checks.h"
 
 namespace palpa::app {
 namespace {
@@ -103,6 +104,7 @@ void print_imbalance(const study::Protocol& protocol, const std::vector<study::P
 
 void print_order(const OrderOptions& options) {
     const study::Protocol protocol = study::read_protocol(options.protocol);
+    study::refuse_mixed_ratings(protocol);
     load_study_scenes(protocol);  // finds a missing map now rather than during the study
     std::vector<study::PlannedParticipant> people;
     for (int number = 1; number <= options.participants; ++number)

@@ -11,6 +11,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/generate/generate.h"
+#include "study/protocol_checks.h"
 #include "study/table_text.h"
 
 namespace palpa::app {
@@ -143,6 +144,7 @@ void measure(const PowerArguments& arguments) {
         files::check_own_results(arguments.output, "power_report.json", {"power.tsv", "power.json", "power.md"});
     }
     const study::Protocol protocol = study::read_protocol(arguments.protocol);
+    study::refuse_mixed_ratings(protocol);
     const PowerOutcome outcome = measure_power(protocol, options);
     if (outcome.complete && !options.output.empty()) {
         const study::ReportTable table = study::power_table(outcome.results);

@@ -13,6 +13,7 @@
 #include "files/sha256.h"
 #include "files/text.h"
 #include "study/preregistration.h"
+#include "study/protocol_checks.h"
 
 namespace palpa::app {
 namespace {
@@ -35,6 +36,7 @@ std::vector<files::Json> hashes_of(const StudyScenes& scenes) {
 
 void preregister(const PreregisterOptions& options) {
     const study::Protocol protocol = study::read_protocol(options.protocol);
+    study::refuse_mixed_ratings(protocol);
     const StudyScenes scenes = load_study_scenes(protocol);
     if (!options.output.empty()) {
         std::vector<std::filesystem::path> inputs{options.protocol};

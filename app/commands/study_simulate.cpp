@@ -13,6 +13,7 @@
 #include "files/json.h"
 #include "files/regular_file.h"
 #include "files/text.h"
+#include "study/protocol_checks.h"
 
 namespace palpa::app {
 namespace {
@@ -35,6 +36,8 @@ void simulate(const SimulateArguments& arguments) {
     options.jobs = std::min(options.participants, arguments.jobs > 0 ? arguments.jobs : 2 * std::max(1, cores));
     files::check_output_folder(arguments.output);
     const study::Protocol protocol = study::read_protocol(arguments.protocol);
+    if (!std::filesystem::exists(std::filesystem::path(arguments.output) / "protocol.json"))
+        study::refuse_mixed_ratings(protocol);
     if (options.practice && protocol.practice_trials == 0)
         throw files::bad_input("--practice", "", arguments.protocol + ", which has no practice trials",
                                "a protocol with practice");

@@ -122,7 +122,12 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
     }
     std::error_code error;
     if (!fs::exists(subject / "now.json", error)) return json;
-    json["now"] = read_now(subject / "now.json");
+    try {
+        json["now"] = read_now(subject / "now.json");
+    } catch (const files::InputError& unreadable) {  // a power cut, or a tool that copies it: the others are shown
+        notes.emplace_back(unreadable.what());
+        return json;
+    }
     // the program held the folder's lock when it wrote this; a step that it does not hold it in any more is over
     if (json["now"].value("locked", false)) json["running"] = files::is_folder_locked(subject);
     if (json["now"].value("step", "") != "trial") return json;

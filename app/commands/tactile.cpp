@@ -123,16 +123,18 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
         run.press = devices::read_press(options.replay);
         warn_outside(run.press, area, options.replay);
     }
-    session::choose_input(run.press, *plan);
+    std::vector<session::DeviceRow> recorded;
+    if (rows) recorded = session::read_device_rows(options.replay, session::field_names<tactile::LoopFeedback>());
+    if (rows)
+        session::choose_input(recorded, *plan);
+    else
+        session::choose_input(run.press, *plan);
     tactile::make_table_now(files::cache_folder(), {}, *plan);
     if (!options.log.empty()) fs::create_directories(options.log);
     std::unique_ptr<tactile::Simulators> simulators;
     if (!rows && options.simulate && !options.virtual_time)
         simulators = tactile::start_simulators(options.replay, options.seed, *plan);
-    if (rows) {  // no device takes part
-        const auto fields = session::field_names<tactile::LoopFeedback>();
-        return session::replay_rows(plan, session::read_device_rows(options.replay, fields), run);
-    }
+    if (rows) return session::replay_rows(plan, recorded, run);  // no device takes part
     for (const session::TactileDevice& device : session::devices_of(*plan, options.simulate || options.virtual_time)) {
         devices.push_back({{"role", device.role},
                            {"name", device.name},
@@ -194,6 +196,7 @@ void run_tactile(const TactileOptions& options) {
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_tactile(json);
+    if (result.cut) throw std::runtime_error(kCut);
 }
 
 void add_tactile_run(CLI::App& tactile) {

@@ -105,7 +105,10 @@ void move_each(const PinDevice& device, devices::PinLine& line) {
 
 const char* verdict(const BoardHealth& board, bool wants_crc) {
     if (!board.answers) return "does not answer: power, wiring, baud rate, device number?";
-    if (!board.timeout) return "NO TIMEOUT: its pins would stay up when Palpa is gone; set one in the board";
+    if (!board.timeout)
+        return "NO TIMEOUT in one and a half times the device file's timeout_ms: its pins would stay up when Palpa is "
+               "gone, "
+               "or for longer; set that timeout in the board";
     if (wants_crc && !board.crc) return "NO CRC: it would take garbled targets; switch CRC on in the board";
     return "safe";
 }
@@ -150,13 +153,8 @@ void test_pins(const PinsOptions& options) {
     if (!wrong.empty()) throw std::runtime_error(options.device + ": " + wrong);
 }
 
-// Heights that were measured with all pins at one pulse, one line of numbers in mm.
-std::vector<double> typed_heights(std::size_t count, double pulse_share) {
-    std::fprintf(stderr, "all pins at %.0f %% of their pulses: type their %zu heights in mm, row by row, in one line\n",
-                 100.0 * pulse_share, count);
-    std::string text;
-    if (!std::getline(std::cin, text))
-        throw files::bad_input("standard input", "", "its end", std::to_string(count) + " heights in mm");
+// One line of heights in mm. Throws InputError.
+std::vector<double> heights_in(const std::string& text, std::size_t count) {
     std::vector<double> heights_m;
     for (const std::string_view field : files::fields_of(text, ' ')) {
         double height_mm = 0.0;
@@ -169,6 +167,25 @@ std::vector<double> typed_heights(std::size_t count, double pulse_share) {
         throw files::bad_input("standard input", "", std::to_string(heights_m.size()) + " numbers",
                                std::to_string(count) + " heights in mm, separated by spaces");
     return heights_m;
+}
+
+// Heights that were measured with all pins at one pulse. A slip of a person's is asked again: the lines before it are an
+// hour's work.
+std::vector<double> typed_heights(std::size_t count, double pulse_share) {
+    while (true) {
+        std::fprintf(stderr,
+                     "all pins at %.0f %% of their pulses: type their %zu heights in mm, row by row, in one line\n",
+                     100.0 * pulse_share, count);
+        std::string text;
+        if (!std::getline(std::cin, text))
+            throw files::bad_input("standard input", "", "its end", std::to_string(count) + " heights in mm");
+        try {
+            return heights_in(text, count);
+        } catch (const files::InputError& slip) {
+            if (::isatty(STDIN_FILENO) == 0) throw;
+            std::fprintf(stderr, "palpa: %s\n", slip.what());
+        }
+    }
 }
 
 // The newest line of the simulator's true heights stands for a gauge.

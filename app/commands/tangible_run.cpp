@@ -260,6 +260,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_run(json);
+    if (result.cut) throw std::runtime_error(kCut);
 }
 
 }  // namespace

@@ -88,12 +88,10 @@ files::Json solve_json(const tangible::DeviceModel& model, const SolvedPress& so
         const auto at = static_cast<std::size_t>(j);
         const tangible::SoftActuator& actuator = model.actuators[at];
         const bool cable = actuator.kind == tangible::ActuatorKind::cable;
-        // a cable is commanded by its length (mm), a cavity by its pressure or volume (cm^3)
-        actuation.push_back({{"name", actuator.name},
-                             {"value", answer.actuation[at]},
-                             {"unit", unit_of(actuator.kind)},
-                             {"command", cable ? 1e3 * answer.command[at] : -1e6 * answer.command[at]},
-                             {"command_unit", cable ? "mm" : "cm3"}});
+        actuation.push_back(
+            {{"name", actuator.name}, {"value", answer.actuation[at]}, {"unit", unit_of(actuator.kind)}});
+        actuation.back()[cable ? "length_mm" : "volume_cm3"] =
+            cable ? 1e3 * answer.command[at] : -1e6 * answer.command[at];
         if ((answer.active >> j & 1U) != 0U) active.push_back(actuator.name);
     }
     files::Json limited = nullptr;
@@ -121,12 +119,14 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
     for (std::size_t j = 0; j < model.actuators.size(); ++j) {
         const tangible::SoftActuator& actuator = model.actuators[j];
         const auto& row = json["actuation"][j];
-        std::printf("  %-8s %-10s a = %s %s, W = %s mm/%s, command %s %s\n", name_of(actuator.kind),
-                    files::printable(actuator.name).c_str(), files::short_number(answer.actuation[j]).c_str(),
-                    unit_of(actuator.kind),
-                    files::short_number(1e3 * answer.W(0, static_cast<Eigen::Index>(j))).c_str(),
-                    unit_of(actuator.kind), files::short_number(row["command"].get<double>()).c_str(),
-                    row["command_unit"].get<std::string>().c_str());
+        const bool cable = actuator.kind == tangible::ActuatorKind::cable;
+        std::printf(
+            "  %-8s %-10s a = %s %s, W = %s mm/%s, %s %s\n", name_of(actuator.kind),
+            files::printable(actuator.name).c_str(), files::short_number(answer.actuation[j]).c_str(),
+            unit_of(actuator.kind), files::short_number(1e3 * answer.W(0, static_cast<Eigen::Index>(j))).c_str(),
+            unit_of(actuator.kind), cable ? "length" : "volume",
+            (files::short_number(row[cable ? "length_mm" : "volume_cm3"].get<double>()) + (cable ? " mm" : " cm3"))
+                .c_str());
     }
     std::printf("what is left, W a + d: %s mm; rank of W: %d\n", files::short_number(1e3 * answer.residual_m).c_str(),
                 answer.rank);

@@ -48,7 +48,8 @@ void follow_devices(double now_s, App& app) {
 }
 
 void stop_devices(App& app) {
-    for_each_device(app, [](auto& control) { stop(control); });
+    if (drives_devices(app.session.scene)) stop(app.tactile);  // pins that are only drawn need no release
+    stop(app.tangible);
 }
 
 void release_devices(App& app) {

@@ -162,7 +162,7 @@ bool in_motion(const App& app) {
 // Stops the trial with a message if a log can no longer be written; earlier rows are on the disk.
 void watch_files(platform::Window& window, App& app) {
     if (trial_stopped(app) || session::files_good(app.session)) return;
-    const std::string why = close_trial(app);
+    const std::string why = close_trial(window, app);
     end_presses(window, app);
     if (StudyRun* study = study_of(app.doing)) return stop_study(why, *study);
     app.notices.problems.push_back(why);
@@ -360,12 +360,12 @@ files::Json Live::close() {
     }
     if (const auto* calibrating = std::get_if<Calibrating>(&it.app.doing)) stop_recording(*calibrating->form);
     remember_window(*it.window, it.app);
-    if (study_of(it.app.doing) != nullptr) return close_study(*it.gui, it.app);
+    if (study_of(it.app.doing) != nullptr) return close_study(*it.window, *it.gui, it.app);
     rest_devices(it.app);
     files::Json result = result_of(it.app);
     result["start_to_first_frame_s"] = it.first_frame_s;
     result["overflow"] = it.gui->overflow();
-    close_trial(it.app);
+    close_trial(*it.window, it.app);
     if (const auto* stopped = std::get_if<TrialStopped>(&it.app.course)) throw std::runtime_error(stopped->why);
     if (!it.app.lost.empty()) throw std::runtime_error(it.app.lost);
     return result;

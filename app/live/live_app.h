@@ -171,7 +171,7 @@ bool work_at_stake(const App& app);
 void note_resize(const platform::Window& window, const Gui& gui, App& app);
 // Closes the files of the trial and hands them to the keeper. If they could not be written, stops the trial and returns
 // why, else "".
-std::string close_trial(App& app);
+std::string close_trial(const platform::Window& window, App& app);
 void act(platform::Action action, platform::Window& window, App& app);
 
 // part_live.cpp
@@ -234,6 +234,7 @@ bool felt_elsewhere(const App& app);
 double trial_ends_s(const App& app);
 bool allowed(const platform::Sample& sample, App& app);  // the due condition allows the sample's device
 files::Json study_json(const App& app);                  // the progress
-files::Json close_study(const Gui& gui, App& app);       // throws std::runtime_error if the study had to stop
+// Throws std::runtime_error if the study had to stop.
+files::Json close_study(const platform::Window& window, const Gui& gui, App& app);
 
 }  // namespace palpa::app

@@ -12,6 +12,7 @@
 #include "app/scene_choices.h"
 #include "app/screens/words.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "parts/edit.h"
 #include "scene/tissue.h"
 
@@ -75,15 +76,15 @@ EditedFiles edited_files(const fs::path& design) {
     std::tuple<bool, fs::file_time_type, int> best{};
     int highest = 0;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(edits_folder(), error)) {
-        const int number = number_of_copy(entry.path(), design);
+    for (const fs::path& entry : files::listed_entries(edits_folder())) {
+        const int number = number_of_copy(entry, design);
         highest = std::max(highest, number);
         if (number == 0) continue;
-        const std::optional<bool> holds = holds_edits(entry.path(), design);
-        const std::tuple one{holds.has_value(), entry.last_write_time(error), number};
+        const std::optional<bool> holds = holds_edits(entry, design);
+        const std::tuple one{holds.has_value(), fs::last_write_time(entry, error), number};
         if (!holds.value_or(true) || (!out.last.empty() && one < best)) continue;
         best = one;
-        out.last = entry.path();
+        out.last = entry;
     }
     const std::string stem = design.stem().string() + "-edited";
     out.next = edits_folder() / (stem + (highest == 0 ? "" : "-" + std::to_string(highest + 1)) + ".json");

@@ -13,6 +13,7 @@
 #include "app/study/study_device.h"
 #include "app/study/study_run.h"
 #include "files/input_error.h"
+#include "study/protocol_checks.h"
 
 namespace palpa::app {
 namespace {
@@ -76,10 +77,9 @@ void interrupt_study_trial(Interruption why_interrupted, platform::Window& windo
         session::note_event("device_gone", now_of(app, window), app.session);
     if (why_interrupted == Interruption::no_pressure)
         session::note_event("no_pressure", now_of(app, window), app.session);
-    session::note_time(now_of(app, window), app.session);  // without touches no sample has told the time
     app.asked.reset();
     StudyRun& run = *study_of(app.doing);
-    const std::string why = close_trial(app);
+    const std::string why = close_trial(window, app);
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
     if (why_interrupted != Interruption::untouched) return wait_for_device(true, run);
@@ -106,15 +106,6 @@ void follow_keeper(double now_s, App& app) {
     if (at<step::Done>(run) || at<step::Withdrawn>(run)) run.where = app.keeper->where(run.code);
 }
 
-// Ratings are of a condition whose trials have just been done. Studies that have begun go on as they were.
-void check_ratings(const study::Protocol& protocol, const std::filesystem::path& log) {
-    if (protocol.ratings.empty() || protocol.conditions.size() < 2 ||
-        protocol.trial_order == study::TrialOrder::blocked || std::filesystem::exists(log / "protocol.json"))
-        return;
-    const std::string file = protocol.file.string();
-    throw files::bad_input(file, "ratings", "ratings of conditions whose trials are mixed", "none");
-}
-
 // A participant must be able to read what is agreed to and asked. Throws InputError.
 void check_letters(const study::Protocol& protocol) {
     const std::string file = protocol.file.string();
@@ -133,7 +124,9 @@ void load_study(const RunOptions& options, App& app) {
     // on a tablet the screen refuses a code that has finished, since there is no command line to give another one
     const study::Protocol protocol = study::read_protocol(options.protocol);
     check_letters(protocol);
-    check_ratings(protocol, options.log);
+    // studies that have begun go on as they were
+    if (!std::filesystem::exists(std::filesystem::path(options.log) / "protocol.json"))
+        study::refuse_mixed_ratings(protocol);
     StudyRun run = open_study_run(protocol, options.log, tablet ? "" : options.participant);
     run.on_tablet = tablet;
     run.first_run = options.first_run;
@@ -156,7 +149,7 @@ bool repeat_if_pen_unproven(platform::Window& window, App& app) {
 // Reveals nothing. The next step comes once the trial is on the disk.
 void finish_study_trial(platform::Window& window, App& app) {
     StudyRun& run = *study_of(app.doing);
-    const std::string why = close_trial(app);
+    const std::string why = close_trial(window, app);
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
     if (due_trial(run).practice && !due_compares(run)) {
@@ -232,18 +225,17 @@ bool allowed(const platform::Sample& sample, App& app) {
 
 files::Json study_json(const App& app) {
     const StudyRun& run = *study_of(app.doing);
-    const bool told = at<step::Told>(run) || at<step::Feedback>(run);  // the trial itself is on the disk
     return files::Json{{"participant", run.code},
                        {"step", name_of(run.step)},
-                       {"finished", run.progress.finished.size() + (told ? 1 : 0)},
+                       {"finished", finished_count(run)},
                        {"of", run.progress.plan.trials.size()}};
 }
 
 // A trial in progress is logged as interrupted.
-files::Json close_study(const Gui& gui, App& app) {
+files::Json close_study(const platform::Window& window, const Gui& gui, App& app) {
     const StudyRun& run = *study_of(app.doing);
     if (trial_goes_on(run)) {
-        const std::string why = close_trial(app);
+        const std::string why = close_trial(window, app);
         if (!why.empty()) throw std::runtime_error(why);
     }
     if (at<step::Consent>(run)) forget_unasked(run);

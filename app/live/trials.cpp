@@ -40,8 +40,8 @@ void keep_result(App& app) {
     attempt(app, [&] { session::keep_trial(session::kept_trial(app.session, files::utc_now()), app.history_folder); });
 }
 
-void close_or_tell(App& app) {
-    const std::string why = close_trial(app);
+void close_or_tell(const platform::Window& window, App& app) {
+    const std::string why = close_trial(window, app);
     if (!why.empty()) app.notices.problems.push_back(why);
 }
 
@@ -124,8 +124,10 @@ void note_resize(const platform::Window& window, const Gui& gui, App& app) {
     scene::put_on_screen(s.scene, *s.plan, {now.width_px, now.height_px, now.x_px, now.y_px, area.px_per_m}, s.state);
 }
 
-std::string close_trial(App& app) {
+std::string close_trial(const platform::Window& window, App& app) {
     rest_devices(app);
+    if (!app.trace)
+        session::note_time(now_of(app, window), app.session);  // an interruption comes now, not with the last touch
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
     const std::optional<study::RunFiles> files = app.session.files;
     const bool good = session::close_files(result_of(app), app.session);
@@ -139,7 +141,7 @@ std::string close_trial(App& app) {
 
 void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, platform::Window& window, App& app) {
     end_presses(window, app);
-    close_or_tell(app);
+    close_or_tell(window, app);
     session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
     // the debriefing belongs to the tissue before
     if (std::holds_alternative<Reviewing>(app.doing)) go_to(Palpating{}, window, app);
@@ -147,7 +149,7 @@ void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, plat
 
 void begin_anew(platform::Window& window, const Gui& gui, App& app) {
     end_presses(window, app);
-    close_or_tell(app);
+    close_or_tell(window, app);
     if (app.keeper != nullptr && !app.keeper->ready()) {
         app.course = WaitsForKeeper{};
         return;
@@ -298,7 +300,7 @@ void act(platform::Action action, platform::Window& window, App& app) {
     if (action == platform::Action::method) note_method(app);
     if (!app.session.trial.finished) return;
     if (study != nullptr) return finish_study_trial(window, app);
-    close_or_tell(app);  // before the presses end: the log of a finished trial ends with its last action
+    close_or_tell(window, app);  // before the presses end: the log of a finished trial ends with its last action
     keep_result(app);
     go_to(back_to_trial(app), window, app);
     app.notices.note.clear();

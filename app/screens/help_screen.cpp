@@ -46,8 +46,13 @@ void draw_help(const Shown& shown, Gui& gui, ViewState& view) {
     gui.claim({0.0f, 0.0f, window.width, window.height});  // nothing is palpated meanwhile
     const float width_px = std::min(window.width, 150.0f * gui.mm());
     const std::vector<KeyLine> keys = key_lines(shown.notices.keeps_trials);
-    const float lines = static_cast<float>(keys.size()) + 2.5f;
-    const float needed_px = lines * ImGui::GetTextLineHeightWithSpacing() + (kTarget_mm + 12.0f) * gui.mm();
+    float column_px = 0.0f;
+    for (const KeyLine& line : keys) column_px = std::max(column_px, ImGui::CalcTextSize(line.key).x);
+    column_px += 5.0f * gui.mm();
+    const float wrap_px = width_px - 2.0f * ImGui::GetStyle().WindowPadding.x - column_px;
+    float needed_px = 2.5f * ImGui::GetTextLineHeightWithSpacing() + (kTarget_mm + 12.0f) * gui.mm();
+    for (const KeyLine& line : keys)
+        needed_px += ImGui::CalcTextSize(line.does, nullptr, false, wrap_px).y + ImGui::GetStyle().ItemSpacing.y;
     const float height_px = std::min(window.height, needed_px);
     const float x0 = 0.5f * (window.width - width_px);
     const float y0 = 0.5f * (window.height - height_px);
@@ -61,9 +66,6 @@ void draw_help(const Shown& shown, Gui& gui, ViewState& view) {
     const float below_px = (kTarget_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("keys", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
-    float column_px = 0.0f;
-    for (const KeyLine& line : keys) column_px = std::max(column_px, ImGui::CalcTextSize(line.key).x);
-    column_px += 5.0f * gui.mm();
     for (const KeyLine& line : keys) {
         const float left_px = ImGui::GetCursorPosX();
         ImGui::TextUnformatted(line.key);
@@ -71,7 +73,11 @@ void draw_help(const Shown& shown, Gui& gui, ViewState& view) {
         ImGui::SetCursorPosX(left_px + column_px);
         paragraph(line.does);
     }
-    ImGui::EndChild();
+    const float lines =
+        (gui.pressed(platform::key::down) ? 1.0f : 0.0f) - (gui.pressed(platform::key::up) ? 1.0f : 0.0f);
+    if (lines != 0.0f)
+        ImGui::SetScrollY(std::max(0.0f, ImGui::GetScrollY() + lines * ImGui::GetTextLineHeightWithSpacing()));
+    end_scrolled("keys", gui);
     if (big_button(words::kClose, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) view.help = false;
     end_panel("help", gui);
 }

@@ -61,7 +61,7 @@ void ask_to_delete(const Gui& gui, HistoryView& history, Wishes& wishes) {
 }
 
 void left_column(const Shown& shown, const PanelArea& area, Gui& gui, HistoryView& history, Wishes& wishes) {
-    begin_panel("history", area, gui);
+    begin_part("results", area);
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui))
         wishes.screen = Screen::trial;
     const float there_px = ImGui::GetContentRegionAvail().y;
@@ -80,7 +80,7 @@ void left_column(const Shown& shown, const PanelArea& area, Gui& gui, HistoryVie
     const bool kept = shown.settings.keep_results && !history.folder.empty();
     paragraph(kept ? words::filled(words::kHistoryKeptIn, {history.folder.string()}) : words::kHistoryNotKept);
     ImGui::EndChild();
-    end_panel("history", gui);
+    end_part("results", gui);
 }
 
 // Of tissue that has nodules.
@@ -112,7 +112,7 @@ void draw_learning_curve(const PanelArea& whole, const Gui& gui, HistoryView& hi
     // a press chooses the nearest trial
     ImGui::SetCursorScreenPos(ImVec2(plot.area.x0, plot.area.y0));
     const ImVec2 size(std::max(1.0f, plot.area.width()), std::max(1.0f, plot.area.height()));
-    if (!ImGui::InvisibleButton("curve", size) || history.trials.empty()) return;
+    if (!press_area("curve", size) || history.trials.empty()) return;
     const double share = static_cast<double>((ImGui::GetMousePos().x - plot.area.x0) / plot.area.width());
     const double x = plot.least_x + share * (plot.most_x - plot.least_x);
     choose_trial(static_cast<std::size_t>(std::clamp(std::round(x), 1.0, count)) - 1, history);
@@ -243,8 +243,9 @@ void draw_history_screen(const Shown& shown, Gui& gui, HistoryView& history, Wis
         wide ? PanelArea{0.0f, 0.0f, list_px, window.height} : PanelArea{0.0f, 0.0f, window.width, list_px};
     const PanelArea rest = wide ? PanelArea{list_px, 0.0f, window.width, window.height}
                                 : PanelArea{0.0f, list_px, window.width, window.height};
+    begin_bare_panel("history", gui);
     left_column(shown, list, gui, history, wishes);
-    begin_panel("progress", rest, gui);
+    begin_part("progress", rest);
     ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(rest.x0, rest.y0), ImVec2(rest.x1, rest.y1), kDark);
     const float margin_px = 3.0f * mm;
     const float split = rest.y0 + 0.36f * rest.height();
@@ -258,7 +259,8 @@ void draw_history_screen(const Shown& shown, Gui& gui, HistoryView& history, Wis
         ImGui::SetCursorScreenPos(ImVec2(rest.x0 + margin_px, rest.y1 - controls_px));
         replay_controls(gui, trial, history);
     }
-    end_panel("progress", gui);
+    end_part("progress", gui);
+    end_panel("history", gui);
 }
 
 }  // namespace palpa::app

@@ -60,7 +60,11 @@ float control_scale(double px_per_mm, float width_px, float height_px, double to
         return scale;
     }
     constexpr float kDesk_px_per_mm = 96.0f / 25.4f;
-    return kDesk_px_per_mm * std::clamp(std::min(width_px, height_px) / 800.0f, 1.0f, 2.0f);
+    const float desk = kDesk_px_per_mm * std::clamp(std::min(width_px, height_px) / 800.0f, 1.0f, 2.0f);
+    // as small as on a phone, if that gives the tissue its room; a window for which that is too large as well keeps its letters
+    float scale = desk;
+    for (int i = 0; i < 6 && !has_room(width_px, height_px, scale); ++i) scale *= 0.95f;
+    return has_room(width_px, height_px, scale) ? scale : desk;
 }
 
 }  // namespace palpa::app

@@ -34,8 +34,9 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bo
 float larger_scale(float mm, float text, float width_px, float height_px);
 
 // Returns px per millimetre for controls: the screen's own scale if it is known, else touch_px_per_mm, which the system gives
-// for a touch screen (NaN: none), either reduced until the controls fit and leave the tissue room, if need be; else that of a desktop screen (96 px per
-// inch), and more in larger windows.
+// for a touch screen (NaN: none), either reduced until the controls fit and leave the tissue room, if need be. Else that of
+// a desktop screen (96 px per inch), more in larger windows, and down to 0.74 of it in small ones where the tissue then has
+// its room.
 float control_scale(double px_per_mm, float width_px, float height_px,
                     double touch_px_per_mm = std::numeric_limits<double>::quiet_NaN());
 

@@ -67,9 +67,12 @@ Values values_of(const MapBrowser& browser) {
         high = std::max(high, v);
     }
     if (!(low <= high)) low = high = 0.0;
-    if (out.apart) low = -(high = std::max({std::abs(low), std::abs(high), 1e-9}));
-    out.low = low;
-    out.high = std::max(high, low + 1e-9);
+    if (out.apart) low = -(high = std::max(std::abs(low), std::abs(high)));
+    // a matrix that is the same everywhere stands in the middle of its bar
+    const double size = std::max({std::abs(low), std::abs(high), 1e-3});
+    const double spread = high - low > 1e-6 * size ? 0.0 : 0.1 * size;
+    out.low = low - spread;
+    out.high = high + spread;
     return out;
 }
 
@@ -175,7 +178,8 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     draw.AddRect(ImVec2(low.x, f.low.y), ImVec2(low.x + width_px, f.high.y), kPale);
     const float text_px = 0.8f * ImGui::GetFontSize();
     const double step = figures::tic_step(values.high - values.low, static_cast<double>(height / (5.0f * text_px)));
-    for (double v = std::ceil((values.low - 1e-9) / step) * step; v <= values.high + 1e-9; v += step) {
+    const double near = 1e-6 * (values.high - values.low);
+    for (double v = std::ceil((values.low - near) / step) * step; v <= values.high + near; v += step) {
         const float y = f.high.y - height * static_cast<float>((v - values.low) / (values.high - values.low));
         draw.AddLine(ImVec2(low.x + width_px, y), ImVec2(low.x + width_px + mm, y), kPale);
         draw.AddText(ImGui::GetFont(), text_px, ImVec2(low.x + width_px + 1.4f * mm, y - 0.5f * text_px), kPale,
@@ -277,8 +281,7 @@ std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2
         cross(draw, at, 2.0f * mm, kInk, 0.6f * mm);
     }
     ImGui::SetCursorScreenPos(f.low);
-    pressed =
-        ImGui::InvisibleButton("cells", ImVec2(std::max(1.0f, f.high.x - f.low.x), std::max(1.0f, f.high.y - f.low.y)));
+    pressed = press_area("cells", ImVec2(std::max(1.0f, f.high.x - f.low.x), std::max(1.0f, f.high.y - f.low.y)));
     const ImVec2 mouse = ImGui::GetMousePos();
     const bool over =
         ImGui::IsItemHovered() && mouse.x >= f.low.x && mouse.x < f.high.x && mouse.y >= f.low.y && mouse.y < f.high.y;

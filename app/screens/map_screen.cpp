@@ -168,7 +168,7 @@ void back_button(const Gui& gui, Wishes& wishes) {
 }
 
 void draw_controls(const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wishes) {
-    begin_panel("map controls", areas.controls, gui);
+    begin_part("controls", areas.controls);
     const bool wide = areas.controls.width() < areas.controls.height();
     back_button(gui, wishes);
     const float line_px = kTarget_mm * gui.mm() + ImGui::GetStyle().ItemSpacing.y;
@@ -196,7 +196,7 @@ void draw_controls(const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wi
                  gui, browser);
         ImGui::EndChild();
     }
-    end_panel("map controls", gui);
+    end_part("controls", gui);
 }
 
 }  // namespace
@@ -258,24 +258,29 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     }
     const Areas areas = areas_of(window.width, window.height, gui.mm());
     if (browser.map.n_cells() > 0) take_map_keys(gui, browser);
+    begin_bare_panel("maps", gui);
     draw_controls(areas, gui, browser, wishes);
     std::optional<Eigen::Vector2d> pointed_m;
     bool pressed = false;
-    begin_panel("map matrix", areas.matrix, gui);
+    begin_part("matrix", areas.matrix);
     if (browser.map.n_cells() > 0) pointed_m = draw_map_matrix(browser, ImGui::GetContentRegionAvail(), gui, pressed);
-    end_panel("map matrix", gui);
+    end_part("matrix", gui);
     if (pressed && pointed_m) add_pin(*pointed_m, browser);
     if (pointed_m) browser.pointed_m.reset();  // the pointer replaces the keys
-    begin_panel("map curves", areas.curves, gui);
+    begin_part("curves", areas.curves);
     if (browser.map.n_cells() > 0)
         draw_map_curves(browser, pointed_m ? pointed_m : browser.pointed_m, ImGui::GetContentRegionAvail(), gui);
-    end_panel("map curves", gui);
-    begin_panel("map facts", areas.facts, gui);
+    end_part("curves", gui);
+    begin_part("notes", areas.facts);
     ImGui::BeginChild("facts", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (browser.map.n_cells() > 0) wrapped_text(browser.map.name);
     for (const std::string& fact : browser.facts) paragraph(fact);
+    // Page Up and Page Down choose the depth here
+    if (gui.pressed(platform::key::home)) ImGui::SetScrollY(0.0f);
+    if (gui.pressed(platform::key::end)) ImGui::SetScrollY(ImGui::GetScrollMaxY());
     ImGui::EndChild();
-    end_panel("map facts", gui);
+    end_part("notes", gui);
+    end_panel("maps", gui);
 }
 
 }  // namespace palpa::app

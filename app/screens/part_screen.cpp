@@ -149,11 +149,12 @@ void draw_doubts(const PartTissue& tissue, const PartWork& work) {
 void draw_tools(const PartTissue& tissue, const Gui& gui, PartView& view) {
     constexpr const char* kTools[] = {words::kToolPress, words::kToolSculpt, words::kToolPermute};
     constexpr const char* kHints[] = {words::kHintToolPress, words::kHintToolSculpt, words::kHintToolPermute};
+    constexpr const char* kKeys[] = {"1", "2", "3"};
     const float width_px = share_of_line_px(3);
     for (int i = 0; i < 3; ++i) {
         if (i > 0) ImGui::SameLine();
         const auto tool = static_cast<PartTool>(i);
-        if (big_button(kTools[i], "", {width_px, kTarget_mm, true, view.tool == tool, kHints[i]}, gui))
+        if (big_button(kTools[i], kKeys[i], {width_px, kTarget_mm, true, view.tool == tool, kHints[i]}, gui))
             view.tool = tool;
     }
     if (view.tool == PartTool::press) return;
@@ -163,13 +164,14 @@ void draw_tools(const PartTissue& tissue, const Gui& gui, PartView& view) {
     const std::string radius =
         words::filled(words::kToolRadius, {fixed(kToolRadii_mm[static_cast<std::size_t>(view.radius)], 1)}) +
         "###radius";
-    if (big_button(radius.c_str(), "", {half_px, kTarget_mm, true, false}, gui))
+    if (big_button(radius.c_str(), words::kKeyRadius, {half_px, kTarget_mm, true, false}, gui) || gui.pressed('k'))
         view.radius = (view.radius + 1) % static_cast<int>(kToolRadii_mm.size());
     if (!permutes) return;
     ImGui::SameLine();
     view.material = std::min(view.material, materials.size() - 1);
     const std::string material = materials[view.material] + "###material";
-    if (big_button(material.c_str(), "", {half_px, kTarget_mm, true, false, words::kHintMaterial}, gui))
+    const ButtonLook look{half_px, kTarget_mm, true, false, words::kHintMaterial};
+    if (big_button(material.c_str(), words::kKeyMaterial, look, gui) || gui.pressed('l'))
         view.material = (view.material + 1) % materials.size();
 }
 
@@ -255,15 +257,16 @@ void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& 
                    gui))
         wishes.part = wish_of(PartWish::Kind::redo);
     ImGui::SameLine();
-    if (big_button(words::kMagnify, "", {width_px, kTarget_mm, true, view.magnified, words::kHintMagnify}, gui))
+    if (big_button(words::kMagnify, words::kKeyMagnify,
+                   {width_px, kTarget_mm, true, view.magnified, words::kHintMagnify}, gui))
         view.magnified = !view.magnified;
     const bool changes = tissue.methods.size() > 1 && !shown.state.touch.down;
     if (!tissue.methods.empty() &&
         big_button(words::kNextMethod, words::kKeyMethod, {0.0f, kTarget_mm, changes, false, words::kHintMethod}, gui))
         wishes.action = platform::Action::method;
     // what comes and goes stands last, so that no button moves under the pen
-    if (view.earlier &&
-        big_button(words::kEarlierEdits, "", {0.0f, kTarget_mm, true, false, words::kHintEarlierEdits}, gui))
+    const ButtonLook look{0.0f, kTarget_mm, true, false, words::kHintEarlierEdits};
+    if (view.earlier && (big_button(words::kEarlierEdits, words::kKeyEarlier, look, gui) || gui.pressed('o')))
         wishes.part = wish_of(PartWish::Kind::earlier);
     draw_saves(gui, view, wishes);
 }
@@ -290,7 +293,8 @@ void draw_kept(const PartView& view) {
 
 void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, Wishes& wishes) {
     for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
-    if (!shown.notices.problems.empty() && big_button(words::kDismiss, "", {}, gui)) wishes.understood = true;
+    if (!shown.notices.problems.empty() && big_button(words::kDismiss, words::kEscape, {}, gui))
+        wishes.understood = true;
     if (view.pending) paragraph(words::filled(words::kCellsPending, {fixed(100.0 * *view.pending, 0)}));
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
     draw_kept(view);
@@ -355,6 +359,7 @@ void part_keys(const Shown& shown, const Gui& gui, PartView& view, Wishes& wishe
     for (int i = 0; i < 3; ++i) {
         if (gui.pressed('1' + i)) view.tool = static_cast<PartTool>(i);
     }
+    if (gui.pressed('5')) view.magnified = !view.magnified;
 }
 
 }  // namespace palpa::app

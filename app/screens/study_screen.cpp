@@ -171,13 +171,17 @@ bool takes_digits(const study::Item& item) {
     return item.choices.empty() && item.from && *item.from >= 0 && *item.to <= 9;
 }
 
-void take_digit(const std::vector<study::Item>& items, const Gui& gui, std::vector<std::string>& answers) {
+// Right after a step has begun the key may have been meant for the step before: it answers nothing, and Enter does not
+// leave a page that is open behind somebody who was quick.
+void take_digit(const StudyRun& run, double now_s, const Gui& gui, StudyForm& form) {
     if (ImGui::GetIO().WantTextInput) return;
+    const std::vector<study::Item>& items = due_items(run);
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (!takes_digits(items[i]) || !answers[i].empty()) continue;
+        if (!takes_digits(items[i]) || !form.answers[i].empty()) continue;
         for (int digit = *items[i].from; digit <= *items[i].to; ++digit) {
-            if (gui.pressed('0' + digit) || gui.pressed(platform::key::pad_0 + digit))
-                answers[i] = std::to_string(digit);
+            if (!gui.pressed('0' + digit) && !gui.pressed(platform::key::pad_0 + digit)) continue;
+            form.too_early = is_double_enter(run, now_s);
+            if (!form.too_early) form.answers[i] = std::to_string(digit);
         }
         return;
     }
@@ -190,7 +194,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     const bool typed = !items.empty() && items[0].choices.empty() && !run.on_tablet;
     const bool focus = typed && answers.size() != items.size();
     answers.resize(items.size());
-    if (!is_double_enter(run, now_s)) take_digit(items, gui, answers);  // the key may have answered the step before
+    take_digit(run, now_s, gui, form);
     const auto* rated = std::get_if<step::Ratings>(&run.step);
     title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
     if (rated != nullptr) paragraph(words::kAboutLastTrials);  // a condition's name would tell what is compared
@@ -213,7 +217,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     }
     end_scrolled("items", gui);
     const bool open = std::all_of(answers.begin(), answers.end(), [](const std::string& a) { return a.empty(); });
-    const bool accident = open && is_double_enter(run, now_s);
+    const bool accident = open && (is_double_enter(run, now_s) || (form.too_early && enter_pressed(gui)));
     if (forward(words::kContinue, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
 }
 

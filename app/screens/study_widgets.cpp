@@ -5,13 +5,10 @@
 #include "app/screens/widgets.h"
 
 namespace palpa::app {
-namespace {
 
 bool enter_pressed(const Gui& gui) {
     return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
 }
-
-}  // namespace
 
 bool forward(const char* label, const Gui& gui, bool enabled) {
     const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);

@@ -10,6 +10,8 @@
 
 namespace palpa::app {
 
+bool enter_pressed(const Gui& gui);
+
 // The button that leads on; Enter does the same.
 bool forward(const char* label, const Gui& gui, bool enabled = true);
 void title(const std::string& text);

@@ -34,8 +34,9 @@ void draw_state(const TactileShown& tactile) {
     const TactileMoment& moment = tactile.moment;
     if (!tactile.problem.empty()) return warning_paragraph(tactile.problem);
     if (tactile.opening) return paragraph(words::kDevicesOpening);
-    if (tactile.devices.empty()) return paragraph(moment.rows > 0 ? words::kPinsOnlyDrawn : words::kNoTactile);
+    // after a stop no trial opens the devices, until they are released
     if (moment.stopped) return warning_paragraph(words::filled(words::kStoppedBy, {moment.fault}));
+    if (tactile.devices.empty()) return paragraph(moment.rows > 0 ? words::kPinsOnlyDrawn : words::kNoTactile);
     if (*moment.fault != '\0') return warning_paragraph(words::filled(words::kRestsSince, {moment.fault}));
     if (!tactile.runs) return paragraph(words::kTactileRests);
     wrapped_text(moment.held ? words::kHolds : words::kTactileRuns);
@@ -80,7 +81,7 @@ void draw_buttons(const TactileShown* tactile, const Gui& gui, Wishes& wishes) {
     const float width_px = std::min(52.0f * gui.mm(), share_of_line_px(2));
     if (big_button(words::kBack, words::kEscape, {width_px, kTarget_mm, true, false}, gui))
         wishes.screen = Screen::trial;
-    if (tactile == nullptr || tactile->devices.empty()) return;
+    if (tactile == nullptr || (tactile->devices.empty() && !tactile->moment.stopped)) return;
     ImGui::SameLine();
     draw_stop_or_release(*tactile, tactile->moment.stopped, width_px, kTarget_mm, gui, wishes);
 }

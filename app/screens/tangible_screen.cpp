@@ -111,8 +111,8 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
         ImGui::TableNextColumn();
         draw_actuation_bar(actuator, soft.moment.actuation[k], at_limit, gui);
         ImGui::TableNextColumn();
-        const std::string command = actuator.cavity ? in_unit(soft.moment.command[k], 1e6, 2, "ml")
-                                                    : in_unit(soft.moment.command[k], 1e3, 2, "mm");
+        const std::string command =
+            actuator.by_length ? in_unit(soft.moment.length[k], 1e3, 2, "mm") : actuation_text(actuator, a);
         const char* said = at_limit ? words::kAtLimit : held ? words::kHeld : "{}";
         ImGui::TextUnformatted(words::filled(said, {command}).c_str());
     }

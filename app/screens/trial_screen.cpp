@@ -151,7 +151,7 @@ void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
 void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const Notices& notices = shown.notices;
     for (const std::string& problem : notices.problems) warning_paragraph(problem);
-    if (!notices.problems.empty() && big_button(words::kDismiss, "", {}, gui)) wishes.understood = true;
+    if (!notices.problems.empty() && big_button(words::kDismiss, words::kEscape, {}, gui)) wishes.understood = true;
     if (shown.state.without_level) {
         warning_paragraph(words::filled(words::kWithoutLevel,
                                         {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));

@@ -28,7 +28,42 @@ void end_panel(const char* name, Gui& gui) {
     ImGui::End();
 }
 
+void begin_bare_panel(const char* name, Gui& gui) {
+    const WindowSize window = gui.size_px();
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0f, 0.0f));
+    begin_panel(name, {0.0f, 0.0f, window.width, window.height}, gui);
+    ImGui::PopStyleVar();
+}
+
+void begin_part(const char* name, const PanelArea& area) {
+    ImGui::SetCursorScreenPos(ImVec2(area.x0, area.y0));
+    ImGui::BeginChild(name, ImVec2(area.width(), area.height()), false,
+                      ImGuiWindowFlags_NavFlattened | ImGuiWindowFlags_AlwaysUseWindowPadding);
+}
+
+void end_part(const char* name, Gui& gui) {
+    if (ImGui::GetScrollMaxY() > 1.0f || ImGui::GetScrollMaxX() > 1.0f) gui.note_overflow(name);
+    ImGui::EndChild();
+}
+
+bool press_area(const char* name, ImVec2 size) {
+    ImGui::PushItemFlag(ImGuiItemFlags_NoNav, true);
+    const bool pressed = ImGui::InvisibleButton(name, size);
+    ImGui::PopItemFlag();
+    return pressed;
+}
+
 void end_scrolled(const char* name, Gui& gui) {
+    const bool controls = ImGui::GetCurrentWindow()->DC.NavLayersActiveMaskNext != 0;
+    if (!controls && ImGui::GetScrollMaxY() > 0.0f) {
+        const float page_px = ImGui::GetWindowHeight() - ImGui::GetTextLineHeightWithSpacing();
+        const float pages =
+            (gui.pressed(platform::key::page_down) ? 1.0f : 0.0f) - (gui.pressed(platform::key::page_up) ? 1.0f : 0.0f);
+        const float ends = gui.pressed(platform::key::home) ? 0.0f : ImGui::GetScrollMaxY();
+        if (pages != 0.0f)
+            ImGui::SetScrollY(std::clamp(ImGui::GetScrollY() + pages * page_px, 0.0f, ImGui::GetScrollMaxY()));
+        if (gui.pressed(platform::key::home) || gui.pressed(platform::key::end)) ImGui::SetScrollY(ends);
+    }
     if (ImGui::GetScrollMaxX() > 1.0f) gui.note_overflow(name);
     ImGui::EndChild();
 }

@@ -31,8 +31,16 @@ inline constexpr float kMark_mm = 12.0f;
 // be scrolled, and gui.note_overflow() is called.
 void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity = 1.0f);
 void end_panel(const char* name, Gui& gui);
-// Ends a child that scrolls down: what is cut off at its right side is noted as an overflow.
+// Begins a part of a panel that fills its window without margins (begin_bare_panel). Arrow keys move from the controls of one
+// part to those of the others, which they do not between panels.
+void begin_bare_panel(const char* name, Gui& gui);
+void begin_part(const char* name, const PanelArea& area);
+void end_part(const char* name, Gui& gui);
+// Ends a child that scrolls down: what is cut off at its right side is noted as an overflow. Page Up, Page Down, Home and
+// End scroll a child without controls.
 void end_scrolled(const char* name, Gui& gui);
+// An area that takes presses of a pointer alone. Returns true if it is pressed.
+bool press_area(const char* name, ImVec2 size);
 
 struct ButtonLook {
     float width_px = 0.0f;  // 0: the rest of the line

@@ -245,7 +245,7 @@ inline constexpr const char* kKeyWindowWeb = "F11, Esc";
 inline constexpr const char* kKeyWindowWebDo = "full screen, back";
 
 // history
-inline constexpr const char* kNoHistory = "No results yet. Each finished trial is listed here.";
+inline constexpr const char* kNoHistory = "No results yet. Each finished trial that is kept is listed here.";
 inline constexpr const char* kHistoryKeptIn = "Kept in {}.";
 inline constexpr const char* kHistoryNotKept = "Results are not kept: see the settings.";
 inline constexpr const char* kDeleteResults = "Delete all results";
@@ -298,6 +298,10 @@ inline constexpr const char* kMagnify = "5 times";
 inline constexpr const char* kHintMagnify = "Draws displacements five times as large as they are";
 inline constexpr const char* kNextMethod = "Next method";
 inline constexpr const char* kKeyMethod = "J";
+inline constexpr const char* kKeyRadius = "K";
+inline constexpr const char* kKeyMaterial = "L";
+inline constexpr const char* kKeyMagnify = "5";
+inline constexpr const char* kKeyEarlier = "O";
 inline constexpr const char* kHintMethod = "How displacements are computed; changes between presses only";
 inline constexpr const char* kForceOverTime = "Force over time";
 inline constexpr const char* kForceOverTravel = "Force over travel";

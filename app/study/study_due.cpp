@@ -124,10 +124,15 @@ bool is_answer(const study::Item& item, const std::string& answer) {
     return answer.empty() || !item.from || study::is_step_of(item, answer);
 }
 
+std::size_t finished_count(const StudyRun& run) {
+    const bool told = at<step::Told>(run) || at<step::Feedback>(run);
+    return run.progress.finished.size() + (told ? 1 : 0);
+}
+
 files::Json now_json(const StudyRun& run) {
     files::Json json{{"participant", run.code},
                      {"step", name_of(run.step)},
-                     {"finished", run.progress.finished.size()},
+                     {"finished", finished_count(run)},
                      {"of", run.progress.plan.trials.size()},
                      {"locked", run.lock != nullptr && run.lock->held()}};
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) json["stopped"] = stopped->why;

@@ -124,6 +124,9 @@ const std::vector<study::Item>& due_items(const StudyRun& run);          // of t
 // False if the item asks for a number and the answer is none or outside its range. An empty answer is one.
 bool is_answer(const study::Item& item, const std::string& answer);
 
+// Trials that are on the disk, also the one whose result is being told.
+std::size_t finished_count(const StudyRun& run);
+
 // Returns what the experimenter sees from elsewhere (palpa study watch).
 files::Json now_json(const StudyRun& run);
 

@@ -54,10 +54,11 @@ SliceGrid slice_grid(const Part& part, const SlicePitch& pitch) {
     return grid;
 }
 
-// The voxel layer in which the middle of a layer of the printer lies.
+// The voxel layer in which the middle of a layer of the printer lies; box.high[2] where that is above the part, as it may be of
+// the last layer.
 int voxel_layer(const SliceGrid& grid, int layer) {
     const int at = grid.box.low[2] + static_cast<int>(std::floor((layer + 0.5) / grid.per_voxel[2] + 1e-9));
-    return std::min(at, grid.box.high[2] - 1);
+    return std::min(at, grid.box.high[2]);
 }
 
 using Image = std::vector<std::uint8_t>;  // rows of whole bytes, the highest bit first
@@ -131,7 +132,7 @@ std::vector<ExportedFile> export_slices(const Part& part, const SlicePitch& pitc
             drawn = z;
             pixels.assign(materials, 0);
             for (Image& image : images) image.assign(grid.row_bytes() * static_cast<std::size_t>(grid.n[1]), 0);
-            for (int y = grid.box.low[1]; y < grid.box.high[1]; ++y)
+            for (int y = grid.box.low[1]; z < grid.box.high[2] && y < grid.box.high[1]; ++y)
                 draw_line(grid, y, part.voxels.lines[line_of(part.voxels, y, z)], images, pixels);
         }
         for (std::size_t m = 0; m < materials; ++m) {

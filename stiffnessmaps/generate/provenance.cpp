@@ -40,6 +40,23 @@ std::string tangential_text(const MapTask& task) {
            "tangential_y_N of one along +y; for motion along -x and -y friction has the other sign than these arrays.";
 }
 
+// " Nodules A, B: 2.3e+06 Pa, Poisson's ratio 0.49." for each run of nodules of one material.
+std::string nodules_text(const std::vector<PhantomNodule>& nodules) {
+    std::string out;
+    for (std::size_t i = 0; i < nodules.size();) {
+        const Elastic& material = nodules[i].material;
+        std::string names = nodules[i].id;
+        const std::size_t first = i;
+        for (++i; i < nodules.size() && nodules[i].material.young_Pa == material.young_Pa &&
+                  nodules[i].material.poisson == material.poisson;
+             ++i)
+            names += ", " + nodules[i].id;
+        out += (i > first + 1 ? " Nodules " : " Nodule ") + names + ": " + files::number_text(material.young_Pa) +
+               " Pa, Poisson's ratio " + files::number_text(material.poisson) + ".";
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string how_made(const MapTask& task) {
@@ -52,7 +69,9 @@ std::string how_made(const MapTask& task) {
         files::short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
         mm(task.mesh.surface_m[0]) + ". " + tangential_text(task);
     how += " The tissue's Young's modulus, " + files::number_text(p.tissue.young_Pa) + " Pa, is " +
-           (p.tissue.assumed ? "ASSUMED." : "the phantom's.");
+           (p.tissue.assumed ? "ASSUMED" : "the phantom's") + "; its Poisson's ratio is " +
+           files::number_text(p.tissue.poisson) + ". The block: " + mm(p.size_m[0]) + " x " + mm(p.size_m[1]) + " x " +
+           mm(p.size_m[2]) + "." + nodules_text(p.nodules);
     const double amber_m = depth_at_ratio_m(p, mechanics::kAmber);
     const double red_m = depth_at_ratio_m(p, mechanics::kRed);
     if (p.depths_m.back() > amber_m) {

@@ -1,7 +1,10 @@
+#include <algorithm>
+#include <cstdlib>
 #include <doctest/doctest.h>
 
 #include "app/assets.h"
 #include "app/scene_choices.h"
+#include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/study/python.h"
 #include "tests/temporary_folder.h"
@@ -60,6 +63,22 @@ TEST_CASE("scenes: a folder of a shipped scene's name that is no map does not hi
     fs::current_path(before);
     CHECK(found == assets_folder() / "scenes/toothbrush.json");
     CHECK(other == "other");  // what it lacks is said where the map is read
+}
+
+TEST_CASE("scenes: a scene and a map of a person's own that cannot be read are listed by their files' names") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "palpa/scenes");
+    fs::create_directories(folder / "palpa/maps/liver.map");
+    write_text_atomically(folder / "palpa/scenes/lump.json", "{\"name\": \"Lump\",,}");
+    write_text_atomically(folder / "palpa/maps/liver.map/map.json", "{");
+    ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+    const std::vector<Choice> scenes = scene_choices(), maps = map_choices();
+    ::unsetenv("XDG_DATA_HOME");
+    const auto listed = [](const std::vector<Choice>& choices, const std::string& name) {
+        return std::any_of(choices.begin(), choices.end(), [&](const Choice& one) { return one.name == name; });
+    };
+    CHECK(listed(scenes, "lump"));
+    CHECK(listed(maps, "liver"));
 }
 
 // Python's jsonschema is the independent judge: the readers of Palpa do not look at the schemas.

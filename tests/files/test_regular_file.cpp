@@ -162,3 +162,20 @@ TEST_CASE(
     CHECK(refusal(folder / "new").empty());
     CHECK(contains(refusal(""), "found an empty name"));
 }
+
+TEST_CASE("regular file: a result that cannot be written to its folder is refused before any work") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "own");
+    fs::permissions(folder.path(), fs::perms{0755});
+    fs::permissions(folder / "own", fs::perms{0555});
+    const bool root = ::geteuid() == 0;  // who may write everywhere
+    constexpr uid_t kNobody = 65534;
+    if (root) REQUIRE(::seteuid(kNobody) == 0);
+    const std::string file = message_of([&] { check_output(folder / "own/new.json"); });
+    const std::string deep = message_of([&] { check_output_folder(folder / "own/a/b"); });
+    const std::string same = message_of([&] { check_output_folder(folder / "own"); });
+    if (root) REQUIRE(::seteuid(0) == 0);
+    fs::permissions(folder / "own", fs::perms::owner_all);
+    for (const std::string& message : {file, deep, same}) CHECK(contains(message, "to which nothing can be written"));
+    CHECK(message_of([&] { check_output_folder(folder / "own/a/b"); }) == "");
+}

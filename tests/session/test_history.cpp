@@ -148,3 +148,11 @@ TEST_CASE("history: trials of one second do not overwrite each other, and only t
     CHECK(history_files(folder.path()) == std::vector{later});
     CHECK(history_files(folder / "none").empty());
 }
+
+TEST_CASE("history: a file that says more nodules were found than it names is refused") {
+    const TemporaryFolder folder;
+    KeptTrial trial = finished();
+    trial.found = static_cast<int>(trial.nodules.size()) + 1;
+    const std::filesystem::path file = keep_trial(trial, folder.path());
+    CHECK(contains(message_of([&] { read_kept_trial(file); }), "found: found " + std::to_string(trial.found)));
+}

@@ -112,10 +112,23 @@ TEST_CASE("tactile run: a press by force is pressed by force") {
     const auto press = a_press(true);
     choose_input(press, *plan);
     CHECK(plan->input == tactile::InputKind::force);
-    const TactileResult result = run_virtual(plan, {press, {}, 1});
+    const TemporaryFolder folder;
+    const auto log = folder / "log", again = folder / "again";
+    for (const auto& one : {log, again}) std::filesystem::create_directories(one);
+    const TactileResult result = run_virtual(plan, {press, log, 1});
     CHECK(result.steps.max_force_N == close_to(2.5));
     CHECK(result.steps.held_steps > 0);
     CHECK(result.steps.held_steps < result.steps.steps / 2);
+
+    // nothing but its rows says so when it is replayed
+    const auto rows = read_device_rows(log / "press.tactile.tsv", field_names<tactile::LoopFeedback>());
+    auto replays = slab.tactile_plan();
+    choose_input(rows, *replays);
+    CHECK(replay_rows(replays, rows, {{}, again, 1}).steps.max_force_N == close_to(2.5));
+    CHECK(file_text(again / "steps.tsv") == file_text(log / "steps.tsv"));
+    run_virtual(slab.tactile_plan(), {a_press(), folder.path(), 1});
+    choose_input(read_device_rows(folder / "press.tactile.tsv", field_names<tactile::LoopFeedback>()), *replays);
+    CHECK(replays->input == tactile::InputKind::depth);
 }
 
 TEST_CASE("tactile run: a press for a simulated participant: force, depth and true heights, every ms") {

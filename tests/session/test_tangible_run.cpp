@@ -38,6 +38,14 @@ struct SmallRun {
 
 }  // namespace
 
+TEST_CASE("tangible run: screens are told of each drive whether it is told a length") {
+    const SmallRun run;
+    CHECK_FALSE(body_of(*run.plan, "model").actuators.at(0).by_length);
+    tangible::TangiblePlan plan = *run.plan;
+    plan.loop.command = tangible::CommandKind::position;
+    CHECK(body_of(plan, "model").actuators.at(0).by_length);
+}
+
 TEST_CASE("tangible run: on virtual time a seed gives the same log byte for byte, another seed another") {
     SmallRun run;
     const TemporaryFolder folder;
@@ -119,6 +127,9 @@ TEST_CASE("tangible run: live on a plant in this process, without an allocation 
     CHECK(result.ticks.ticks > 3);
     CHECK(result.loop.refused_commands == 0);
     CHECK(result.loop.not_numbers == 0);
+    CHECK_FALSE(result.cut);
+    run.options.ends = [] { return true; };  // a person's Ctrl-C
+    CHECK(run_tangible_live(run.plan, run.plant, {}, run.options).cut);
     if (!allocation_count_works()) return;
     PlantPort port(*run.plan, run.plant, run.options.finger, 1);
     auto loop = make_tangible_loop(run.plan);

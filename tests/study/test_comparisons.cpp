@@ -62,7 +62,9 @@ TEST_CASE("comparisons: the stated one is tested alone; without its logs it says
     seen.primary = PrimaryComparison{Quantity::sensitivity, false, {"y", "z"}, "", PrimaryTest::t};
     const auto missing = primary_result(seen, {});
     CHECK(std::isnan(missing->p));
-    CHECK(missing->people.status == "cannot be computed, because no log is of 'z'");
+    CHECK(missing->people.status == "cannot be computed, because no log of 'z' counts");
+    seen.primary = PrimaryComparison{Quantity::sensitivity, true, {"I", "III"}, "y", PrimaryTest::t};
+    CHECK(primary_result(seen, {})->people.design == Design::between);
 }
 
 TEST_CASE("comparisons: forced choices of two conditions over people, corrected over all pairs") {

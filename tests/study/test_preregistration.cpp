@@ -48,7 +48,7 @@ TEST_CASE("preregistration: design, orders, primary test, stopping rule and hash
 TEST_CASE("preregistration: what the protocol does not state is named first, with its key") {
     const Protocol protocol = protocol_with("");
     const std::string sheet = preregistration_sheet(protocol, {2, "palpa 1", {}});
-    CHECK(missing_statements(protocol).size() == 6);
+    CHECK(missing_statements(protocol).size() == 7);
     CHECK(contains(sheet, "- analysis.stopping_rule: when the study ends"));
     CHECK(contains(sheet, "| stopping rule | NOT STATED |"));
     CHECK(contains(sheet, "| 2 | all"));

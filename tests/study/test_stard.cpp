@@ -75,4 +75,9 @@ TEST_CASE("STARD checklist and preregistration: bars and line breaks of a protoc
     const std::string other = preregistration_sheet(protocol, {});
     CHECK(contains(other, "`palpa study power` takes no single participant"));
     CHECK(contains(other, "Obuchowski and Rockette"));
+    protocol.groups = {{"a", {0}}, {"b", {1}}};
+    CHECK(
+        contains(preregistration_sheet(protocol, {}), "no test: it needs people who take part under every condition"));
+    protocol.groups[1].conditions = {0, 1, 2};
+    CHECK(contains(preregistration_sheet(protocol, {}), "Obuchowski and Rockette"));
 }

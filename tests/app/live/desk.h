@@ -64,11 +64,20 @@ struct Desk {
 
     app::Wishes show_frame() {
         const session::Session& s = app.session;
-        return app::draw_frame(
-            {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, window.now_s()}, {gui, tissue},
-            app.view, app.session.state);
+        app::ToShow shown{s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, window.now_s()};
+        if (app.tactile.shown) shown.tactile = &*app.tactile.shown;
+        return app::draw_frame(shown, {gui, tissue}, app.view, app.session.state);
     }
 };
+
+// Shows frames as the loop does: what a frame wishes is carried out.
+inline void live_frames(Desk& desk, int count) {
+    std::vector<platform::Sample> samples;
+    for (int i = 0; i < count; ++i) {
+        desk.window.poll(0.0, samples);
+        carry_out(desk.show_frame(), desk.window, desk.gui, desk.app);
+    }
+}
 
 // Takes the events that wait, and shows a frame, so many times.
 inline void frames(Desk& desk, int count) {

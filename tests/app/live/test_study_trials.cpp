@@ -56,6 +56,12 @@ struct StudyDesk : Desk {
     }
 };
 
+double interrupted_at_s(const std::string& events) {
+    const std::size_t at = events.find("\tinterrupted\t");
+    REQUIRE(at != std::string::npos);
+    return std::stod(events.substr(events.rfind('\n', at) + 1));
+}
+
 }  // namespace
 
 TEST_CASE("trials: what nobody has touched is not touched where a device leads either, but for a simulated one") {
@@ -137,10 +143,7 @@ TEST_CASE("live: a surface or a trial that nobody touches in its time is repeate
         const auto first = read_text(
             log / "log/sub-01/beh" /
             ("sub-01_task-" + std::string(desk.run().interval > 0 ? "interval" : "palpation") + "_run-01_events.tsv"));
-        const std::size_t at = first.find("\tinterrupted\t");
-        REQUIRE(at != std::string::npos);
-        const std::size_t line = first.rfind('\n', at) + 1;
-        CHECK(std::stod(first.substr(line)) >= 0.3);  // its onset: when the time was over, not when it began
+        CHECK(interrupted_at_s(first) >= 0.3);  // when the time was over, not when it began
     }
 }
 
@@ -189,6 +192,15 @@ TEST_CASE("live: who has finished is told where the trials are, if a keeper know
     desk.finish();
     REQUIRE(at<step::Done>(desk.run()));
     CHECK(desk.run().where == "The trials of 01 are here.");
+}
+
+TEST_CASE("live: a trial that is closed is interrupted when it is closed, not at its last touch") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("repeats": 2)");
+    desk.press();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    close_study(desk.window, desk.gui, desk.app);
+    CHECK(interrupted_at_s(read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_events.tsv")) >= 0.3);
 }
 
 TEST_CASE("live: closing a study's trial that was touched asks first, with or without marks") {

@@ -184,8 +184,8 @@ TangibleShown pressed_strip() {
     strip_surface(soft);
     auto& body = soft.body;
     body.device = "Silicone strip";
-    body.actuators = {{"left cable", false, 0.25, 5.5, {{-0.09f, 0.0f, -0.04f}}, 7},
-                      {"right cable", false, 0.25, 5.5, {{0.09f, 0.0f, -0.04f}}, 757}};
+    body.actuators = {{"left cable", false, true, 0.25, 5.5, {{-0.09f, 0.0f, -0.04f}}, 7},
+                      {"right cable", false, true, 0.25, 5.5, {{0.09f, 0.0f, -0.04f}}, 757}};
     body.bearings = {{{-0.03f, -0.012f, -0.01f}, {-0.03f, 0.012f, -0.01f}, 8e-3},
                      {{0.03f, -0.012f, -0.01f}, {0.03f, 0.012f, -0.01f}, 8e-3}};
     body.effector_m = {0.0f, 0.0f, 2e-3f};
@@ -206,7 +206,7 @@ TangibleShown pressed_strip() {
     m.rank = 1;
     m.iterations = 3;
     m.actuation[0] = m.actuation[1] = 1.94;
-    m.command[0] = m.command[1] = 40.72e-3;
+    m.length[0] = m.length[1] = 40.72e-3;
     m.period_p50_s = 10e-3;
     m.period_p99_s = 10.3e-3;
     m.step_p50_s = 3.1e-3;
@@ -248,7 +248,7 @@ TEST_CASE("screens: a soft device fits at the sizes of desks and tablets: runnin
     failed.problem =
         "assets/devices/strip.json: wires.ports[0].path: found nothing at /dev/ttyUSB0, expected a serial port";
     TangibleShown many = running;  // as many actuators as there may be, and a moment that tells nothing yet
-    many.body.actuators.resize(kMostTangibleActuators, {"chamber in front", true, 0.0, 5e3, {}, -1});
+    many.body.actuators.resize(kMostTangibleActuators, {"chamber in front", true, false, 0.0, 5e3, {}, -1});
     many.moment.wanted_N = many.moment.rendered_N = many.moment.depth_m = many.moment.world_depth_m = kMissing;
     many.moment.compliance.fill(kMissing);
     many.shape = std::make_shared<TangibleShape>(*running.shape);

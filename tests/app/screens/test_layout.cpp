@@ -52,6 +52,15 @@ TEST_CASE("layout: a screen's own scale, measured or told by the system, is used
     }
 }
 
+TEST_CASE("layout: a window as small as a phone's has its controls above a tissue as wide as itself") {
+    const float mm = control_scale(std::numeric_limits<double>::quiet_NaN(), 360.0f, 640.0f);
+    const Layout small = layout_of(360.0f, 640.0f, mm, false);
+    CHECK(small.controls);
+    CHECK_FALSE(small.column);
+    CHECK(small.tissue_px.width() == 360.0f);
+    CHECK(small.tissue_px.height() > 300.0f);
+}
+
 TEST_CASE("layout: a column beside the tissue away from the hand, a strip above it on an upright window") {
     const Layout right = layout_of(1280, 800, 3.78f, false);
     CHECK(right.column);

@@ -149,6 +149,8 @@ TEST_CASE("study run: practice tells what was found, a rating names what is rate
     std::get<step::Trial>(run.step).begun = true;
     give_feedback(2, 1, 4, run);
     REQUIRE(at<step::Feedback>(run));
+    CHECK(now()["finished"] == finished_count(run));  // what watch shows counts the trial that is told of
+    CHECK(finished_count(run) == run.progress.finished.size() + 1);
     CHECK(std::get<step::Feedback>(run.step).found == 2);
     CHECK(std::get<step::Feedback>(run.step).nodules == 3);
     CHECK(std::get<step::Feedback>(run.step).false_positives == 4);

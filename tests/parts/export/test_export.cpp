@@ -197,6 +197,15 @@ TEST_CASE("export: the first row of a slice is the highest y, the first layer th
     REQUIRE(png_image_finish_read(&image, nullptr, gray.data(), 0, nullptr) != 0);
     CHECK(gray[19] == 0);             // top right
     CHECK(gray[20 * 3 + 19] == 255);  // bottom right
+
+    // the middle of the third layer is above the part, which is 2 mm high
+    export_slices(part, {5e-4, 5e-4, 8.5e-4}, folder / "coarse");
+    CHECK(white_pixels(folder / "coarse/hard-00001.png", size) > 0);
+    CHECK(white_pixels(folder / "coarse/hard-00002.png", size) == 0);
+    CHECK(test::contains(message_of([&] {
+                             export_slices(part, {5e-4, 5e-4, 5e-3}, folder / "thick");
+                         }),
+                         "pixels that all miss"));
 }
 
 TEST_CASE("bad input: slices too fine, folders that are not empty; nothing is left behind") {

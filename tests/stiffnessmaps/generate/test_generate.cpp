@@ -98,6 +98,16 @@ TEST_CASE("generate: one process, two, parts that are joined, all give the same 
     CHECK(at(map.normal_N, 10) > 1.1f * at(map.normal_N, 3));  // over the nodule
     CHECK(at(map.tangential_x_N, 8) > 0.01f);                  // before it
     CHECK(at(map.tangential_x_N, 12) < -0.01f);                // behind it
+
+    // a check speaks of this phantom alone
+    for (const auto& [from, to] : {std::array{"40000, \"poisson\": 0.45", "40000, \"poisson\": 0.4"},
+                                   std::array{"2e6", "1e6"}, std::array{"40, 12]", "40, 13]"}}) {
+        write_text_atomically(bench / "p.json", replaced(kPhantom, from, to));
+        const Called called = bench.generate("one.map", "--check");
+        CAPTURE(called.err);
+        CHECK(called.status == 2);
+        CHECK(contains(called.err, "a map of another tissue"));
+    }
 }
 
 TEST_CASE(

@@ -1,0 +1,94 @@
+// Every control is reached by keys alone. Off screen.
+
+#include <doctest/doctest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+#include <memory>
+#include <string>
+
+#include "app/screens/history_screen.h"
+#include "app/screens/map_screen.h"
+#include "app/screens/tactile_screen.h"
+#include "tests/app/live/desk.h"
+#include "tests/app/screens/typing.h"
+
+using namespace palpa;
+using namespace palpa::app;
+using namespace palpa::test;
+
+namespace {
+
+void press(Desk& desk, SDL_Keycode key) {
+    tap(desk.window, key);
+    live_frames(desk, 6);
+}
+
+}  // namespace
+
+TEST_CASE("keys: the list of trials is reached by arrows") {
+    Desk desk("");
+    auto history = std::make_shared<HistoryView>();
+    for (int i = 0; i < 3; ++i) {
+        session::KeptTrial kept;
+        kept.utc = "2026-11-1" + std::to_string(i) + "T09:30:00Z";
+        kept.scene = "s";
+        kept.width_mm = kept.height_mm = 100.0;
+        kept.path = {{0.0, 0.0, 0.0, 0.0, true}, {60.0, 1.0, 1.0, 1.0, false}};
+        history->trials.push_back(kept);
+    }
+    choose_trial(2, *history);
+    open_screen(Screen::history, desk.window, desk.app);
+    desk.app.view.history = history;
+    live_frames(desk, 6);
+    press(desk, SDLK_DOWN);  // shows the ring
+    press(desk, SDLK_DOWN);
+    press(desk, SDLK_RETURN);
+    CHECK(history->chosen != 2);
+}
+
+TEST_CASE("keys: the list of maps is reached by arrows") {
+    Desk desk("");
+    open_screen(Screen::maps, desk.window, desk.app);
+    MapBrowser& browser = *desk.app.view.maps;
+    REQUIRE_FALSE(browser.file.empty());
+    live_frames(desk, 6);
+    browser.maps.push_back({"another", "/nowhere/another.map"});
+    for (int i = 0; i < 12; ++i) press(desk, SDLK_DOWN);
+    press(desk, SDLK_RETURN);
+    CHECK(browser.problem.find("another.map") != std::string::npos);  // which is not there
+}
+
+TEST_CASE("keys: a list of keys that does not fit scrolls") {
+    Desk desk("");
+    desk.app.view.help = true;
+    desk.gui.set_scale(3.78f, 1.4f);
+    live_frames(desk, 6);
+    const auto scrolled = [] {
+        for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if (std::string(window->Name).find("help/keys") != std::string::npos) return window->Scroll.y;
+        }
+        return -1.0f;
+    };
+    REQUIRE(scrolled() == 0.0f);
+    press(desk, SDLK_END);
+    const float all_px = scrolled();
+    CHECK(all_px > 0.0f);
+    press(desk, SDLK_UP);
+    CHECK(scrolled() < all_px);
+    press(desk, SDLK_HOME);
+    CHECK(scrolled() == 0.0f);
+}
+
+TEST_CASE("keys: devices that F12 stopped are released in the next trial too") {
+    Desk desk("");
+    TactileShown& shown = desk.app.tactile.shown.emplace();
+    shown.moment.rows = shown.moment.columns = 6;
+    shown.moment.stopped = true;
+    shown.moment.fault = "F12";
+    open_screen(Screen::tactile, desk.window, desk.app);
+    live_frames(desk, 6);
+    press(desk, SDLK_RIGHT);
+    press(desk, SDLK_RIGHT);
+    press(desk, SDLK_RETURN);
+    CHECK_FALSE((desk.app.tactile.shown && desk.app.tactile.shown->moment.stopped));
+}
