@@ -15,8 +15,7 @@ namespace palpa::files {
 // links.
 std::string_view irregular_kind(const std::filesystem::path& path);
 
-// Lists a folder for a screen, in the order of the names; of one that is not there, cannot be read or fails meanwhile, what
-// could be read. Never throws for the disk.
+// Lists a folder for a screen, in the order of the names: what could be read, also where it is not there or fails meanwhile.
 std::vector<std::filesystem::path> listed_entries(const std::filesystem::path& folder);
 
 // A regular file, open for reading. The constructor throws InputError, without waiting, if the file is not a regular
@@ -45,9 +44,9 @@ void check_input(const std::filesystem::path& path);
 // Throws InputError if it exists and is not a regular file.
 std::filesystem::path output_target(const std::filesystem::path& path);
 
-// Checks, before any work, whether a result may go to `path`: its folder must exist and may be written to, and `path` must be
-// a regular file or a free name. It must not be one of `inputs` under any name (nor a file in an input that is a folder), and not the
-// file to which standard output or standard error go. Throws InputError.
+// Checks, before any work, whether a result may go to `path`: its folder must exist and may be written to, and `path` must
+// be a regular file or a free name. It must not be one of `inputs` under any name (nor a file in an input that is a
+// folder), and not the file to which standard output or standard error go. Throws InputError.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
 // Checks the same for a folder of results, which must be a folder or a free name. `names`: the files that it will hold.

@@ -146,6 +146,12 @@ void draw_doubts(const PartTissue& tissue, const PartWork& work) {
     }
 }
 
+void next_radius(PartView& view) { view.radius = (view.radius + 1) % static_cast<int>(kToolRadii_mm.size()); }
+
+void next_material(const PartTissue& tissue, PartView& view) {
+    view.material = (view.material + 1) % materials_of(tissue).size();
+}
+
 void draw_tools(const PartTissue& tissue, const Gui& gui, PartView& view) {
     constexpr const char* kTools[] = {words::kToolPress, words::kToolSculpt, words::kToolPermute};
     constexpr const char* kHints[] = {words::kHintToolPress, words::kHintToolSculpt, words::kHintToolPermute};
@@ -164,15 +170,13 @@ void draw_tools(const PartTissue& tissue, const Gui& gui, PartView& view) {
     const std::string radius =
         words::filled(words::kToolRadius, {fixed(kToolRadii_mm[static_cast<std::size_t>(view.radius)], 1)}) +
         "###radius";
-    if (big_button(radius.c_str(), words::kKeyRadius, {half_px, kTarget_mm, true, false}, gui) || gui.pressed('k'))
-        view.radius = (view.radius + 1) % static_cast<int>(kToolRadii_mm.size());
+    if (big_button(radius.c_str(), words::kKeyRadius, {half_px, kTarget_mm, true, false}, gui)) next_radius(view);
     if (!permutes) return;
     ImGui::SameLine();
     view.material = std::min(view.material, materials.size() - 1);
     const std::string material = materials[view.material] + "###material";
     const ButtonLook look{half_px, kTarget_mm, true, false, words::kHintMaterial};
-    if (big_button(material.c_str(), words::kKeyMaterial, look, gui) || gui.pressed('l'))
-        view.material = (view.material + 1) % materials.size();
+    if (big_button(material.c_str(), words::kKeyMaterial, look, gui)) next_material(tissue, view);
 }
 
 // The design that a place on the plane belongs to.
@@ -266,7 +270,7 @@ void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& 
         wishes.action = platform::Action::method;
     // what comes and goes stands last, so that no button moves under the pen
     const ButtonLook look{0.0f, kTarget_mm, true, false, words::kHintEarlierEdits};
-    if (view.earlier && (big_button(words::kEarlierEdits, words::kKeyEarlier, look, gui) || gui.pressed('o')))
+    if (view.earlier && big_button(words::kEarlierEdits, words::kKeyEarlier, look, gui))
         wishes.part = wish_of(PartWish::Kind::earlier);
     draw_saves(gui, view, wishes);
 }
@@ -360,6 +364,9 @@ void part_keys(const Shown& shown, const Gui& gui, PartView& view, Wishes& wishe
         if (gui.pressed('1' + i)) view.tool = static_cast<PartTool>(i);
     }
     if (gui.pressed('5')) view.magnified = !view.magnified;
+    if (gui.pressed('k') && view.tool != PartTool::press) next_radius(view);
+    if (gui.pressed('l') && view.tool == PartTool::permute) next_material(*scene::parts_of(shown.plan.tissue), view);
+    if (gui.pressed('o') && view.earlier) wishes.part = wish_of(PartWish::Kind::earlier);
 }
 
 }  // namespace palpa::app
