@@ -23,10 +23,7 @@ void press(Desk& desk, SDL_Keycode key) {
     live_frames(desk, 6);
 }
 
-}  // namespace
-
-TEST_CASE("keys: the list of trials is reached by arrows") {
-    Desk desk("");
+std::shared_ptr<HistoryView> open_history(Desk& desk) {
     auto history = std::make_shared<HistoryView>();
     for (int i = 0; i < 3; ++i) {
         session::KeptTrial kept;
@@ -40,10 +37,31 @@ TEST_CASE("keys: the list of trials is reached by arrows") {
     open_screen(Screen::history, desk.window, desk.app);
     desk.app.view.history = history;
     live_frames(desk, 6);
-    press(desk, SDLK_DOWN);  // shows the ring
-    press(desk, SDLK_DOWN);
-    press(desk, SDLK_RETURN);
-    CHECK(history->chosen != 2);
+    return history;
+}
+
+}  // namespace
+
+TEST_CASE("keys: the list of trials is reached by arrows, and from it what deletes them and what plays them") {
+    for (const bool deletes : {true, false}) {
+        CAPTURE(deletes);
+        Desk desk("");
+        const std::shared_ptr<HistoryView> shown = open_history(desk);
+        HistoryView& history = *shown;
+        press(desk, SDLK_DOWN);  // shows the ring
+        press(desk, SDLK_DOWN);
+        press(desk, SDLK_RETURN);
+        CHECK(history.chosen == 0);
+        press(desk, SDLK_DOWN);  // below the oldest trial
+        if (!deletes) press(desk, SDLK_DOWN);
+        const bool played = history.plays;
+        press(desk, SDLK_RETURN);
+        CHECK(history.asks == deletes);
+        CHECK((history.plays != played) == !deletes);
+        press(desk, SDLK_ESCAPE);  // answers the question, or leaves the screen
+        CHECK_FALSE(history.asks);
+        CHECK(std::holds_alternative<BrowsingHistory>(desk.app.doing) == deletes);
+    }
 }
 
 TEST_CASE("keys: the list of maps is reached by arrows") {
