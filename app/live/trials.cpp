@@ -126,8 +126,9 @@ void note_resize(const platform::Window& window, const Gui& gui, App& app) {
 
 std::string close_trial(const platform::Window& window, App& app) {
     rest_devices(app);
-    if (!app.trace)
-        session::note_time(now_of(app, window), app.session);  // an interruption comes now, not with the last touch
+    // An interruption comes now, not with the last touch. Outside of studies a trace is recorded, whose replay ends with
+    // its last sample and must give the same log.
+    if (study_of(app.doing) != nullptr) session::note_time(now_of(app, window), app.session);
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
     const std::optional<study::RunFiles> files = app.session.files;
     const bool good = session::close_files(result_of(app), app.session);
