@@ -3,7 +3,7 @@
 
 namespace palpa::app {
 
-// What such a command ends with once its figures are written: a script must not take a part for the whole.
+// What the figures of such a command say then, and standard error: nobody shall take a part for the whole.
 inline constexpr const char* kCut = "stopped by a signal before the press was over: the figures are of its beginning";
 
 // While one lives, SIGINT, SIGTERM and SIGHUP do not end the program: they are remembered. Under nohup SIGHUP stays ignored.

@@ -189,6 +189,10 @@ void run_tactile(const TactileOptions& options) {
         std::fprintf(stderr, "palpa: warning: %s\n", relaxed.c_str());
         json["warnings"].push_back(relaxed);
     }
+    if (result.cut) {
+        std::fprintf(stderr, "palpa: warning: %s\n", kCut);
+        json["warnings"].push_back(kCut);
+    }
     if (!result.logged) throw std::runtime_error(options.log + ": the log could not be written to its end");
     if (!options.log.empty())
         files::write_text_atomically(fs::path(options.log) / "performance.json", files::json_text(json));
@@ -196,7 +200,6 @@ void run_tactile(const TactileOptions& options) {
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_tactile(json);
-    if (result.cut) throw std::runtime_error(kCut);
 }
 
 void add_tactile_run(CLI::App& tactile) {

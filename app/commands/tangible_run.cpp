@@ -253,6 +253,10 @@ void run_tangible(const TangibleRunArguments& arguments) {
     note_beyond(deepest_m, *plan, json);
     note_idle_hand(plant_name, by_force, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
+    if (result.cut) {
+        std::fprintf(stderr, "palpa: warning: %s\n", kCut);
+        json["notes"].push_back(kCut);
+    }
     if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())
         files::write_text_atomically(fs::path(arguments.log) / "performance.json", files::json_text(json));
@@ -260,7 +264,6 @@ void run_tangible(const TangibleRunArguments& arguments) {
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_run(json);
-    if (result.cut) throw std::runtime_error(kCut);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "devices/simulators/process.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -153,6 +154,7 @@ TEST_CASE("plant: Ctrl-C ends a run with its report and a whole log") {
     ::waitpid(program, &status, 0);
     CHECK(status == 0);
     const files::Json report = files::read_json(bench.folder / "out.json");
+    CHECK(contains(report["notes"].dump(), "stopped by a signal before the press was over"));
     const std::string ticks = files::read_text(bench.folder / "log/ticks.tsv");
     CHECK(std::count(ticks.begin(), ticks.end(), '\n') == report["ticks"].get<int>() + 1);
     CHECK(files::read_json(bench.folder / "log/performance.json") == report);

@@ -75,7 +75,7 @@ TEST_CASE("tangible solve: every term of a press that can be rendered, and what 
     CHECK(std::abs(soft["residual_mm"].get<double>()) < 1e-6);
     for (const char* key : {"actuation", "rank", "active", "limited_by", "iterations", "time_us"})
         CHECK(soft.contains(key));
-    for (const char* key : {"name", "value", "unit", "command"}) CHECK(soft["actuation"][0].contains(key));
+    for (const char* key : {"name", "value", "unit", "length_mm"}) CHECK(soft["actuation"][0].contains(key));
     const files::Json hard = result_of(palpa_with(solve + "5"));
     CHECK(hard["reachable"] == false);
     CHECK(hard["limited_by"].is_string());
