@@ -165,11 +165,13 @@ bool stays(const CalibrationRows& rows, double plateau, double noise) {
         if (rows.level[i] >= plateau) presses.back().push_back(rows.force_N[i]);
     }
     std::size_t several = 0, rising = 0;
-    for (const std::vector<double>& force_N : presses) {
+    for (std::vector<double>& force_N : presses) {
         if (force_N.size() < 3) continue;
-        const auto [lowest, highest] = std::minmax_element(force_N.begin(), force_N.end());
+        std::sort(force_N.begin(), force_N.end());
+        const std::size_t extreme = force_N.size() / 20;  // of many rows the outermost are noise
+        const double lowest = force_N[extreme], highest = force_N[force_N.size() - 1 - extreme];
         ++several;
-        rising += *highest > 1.25 * *lowest && *highest - *lowest > 6.0 * noise;
+        rising += highest > 1.25 * lowest && highest - lowest > 6.0 * noise;
     }
     return several > 0 && 2 * rising > several;
 }
@@ -185,6 +187,16 @@ std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::
     const auto count = static_cast<std::ptrdiff_t>(n);
     return top ? std::vector<double>(inside.end() - count, inside.end())
                : std::vector<double>(inside.begin(), inside.begin() + count);
+}
+
+// Noise at a plateau that begins at force_N: as great as in the rows next below, in newtons or in share of the force.
+double noise_at_plateau_N(const CalibrationRows& rows, const std::vector<std::size_t>& order, LevelRange range,
+                          double plateau, double force_N) {
+    std::vector<double> below = quarter(rows, order, range.lowest, plateau, true);
+    const double noise = noise_N(below);
+    if (std::any_of(below.begin(), below.end(), [](double one_N) { return one_N <= 0.0; })) return noise;
+    for (double& one_N : below) one_N = std::log(one_N);
+    return std::max(noise, force_N * noise_N(below));
 }
 
 int repeat_of(const CalibrationRows& rows, std::size_t i) { return rows.repeat.empty() ? 0 : rows.repeat[i]; }
@@ -239,7 +251,7 @@ Ends ends_of(const CalibrationRows& rows, LevelRange range) {
         lowest_N = std::min(lowest_N, rows.force_N[i]);
         highest_N = std::max(highest_N, rows.force_N[i]);
     }
-    const double noise = noise_N(quarter(rows, order, range.lowest, plateau, true));
+    const double noise = noise_at_plateau_N(rows, order, range, plateau, lowest_N);
     const bool full = top >= range.highest;
     if (full || stays(rows, plateau, noise)) {
         ends.saturation_N = lowest_N;
@@ -272,7 +284,8 @@ FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& 
     }
     const double floor_N = silent_N - 3.0 * noise_N(quarter(rows, order, range.lowest, range.highest, false));
     const double plateau = std::isnan(ends.saturation_level) ? kInfinity : ends.saturation_level;
-    const double ceiling_N = ends.saturation_N + 3.0 * noise_N(quarter(rows, order, range.lowest, plateau, true));
+    const double ceiling_N =
+        ends.saturation_N + 3.0 * noise_at_plateau_N(rows, order, range, plateau, ends.saturation_N);
     std::vector<std::size_t> kept;
     for (const std::size_t i : order) {
         const bool silent = rows.level[i] <= range.lowest && rows.force_N[i] < floor_N;

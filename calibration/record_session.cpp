@@ -58,6 +58,19 @@ std::string round_percent(double share) {
     return files::short_number(std::round(100.0 * digits * share) / digits) + " %";
 }
 
+// Whether points lie beside a band, and none of it is reached by extrapolation only (as warnings.cpp calls that).
+bool has_points(const RecordOptions& options, const std::vector<CapturedPoint>& points, const Ends& ends, int band) {
+    const double wide = width(options) / options.bands;
+    const double from = options.range.lowest + band * wide, centre = from + 0.5 * wide;
+    bool beside = false, below = !std::isnan(ends.saturation_N), above = false;
+    for (const CapturedPoint& point : points) {
+        beside = beside || std::abs(point.level - centre) <= 1.5 * wide;
+        above = above || point.level <= from + wide;
+        below = below || point.level >= centre - 0.1 * wide;
+    }
+    return beside && above && below;
+}
+
 }  // namespace
 
 CalibrationRows rows_of(const std::vector<CapturedPoint>& points) {
@@ -175,11 +188,7 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
         const Bootstrap& boot = calibration.bootstrap;
         if (boot.fits > 0) {
             for (int band = 0; band < options.bands; ++band) {
-                const double centre = options.range.lowest + (band + 0.5) * width(options) / options.bands;
-                const bool near = std::any_of(points.begin(), points.end(), [&](const CapturedPoint& point) {
-                    return std::abs(point.level - centre) <= 1.5 * width(options) / options.bands;
-                });
-                if (!near) continue;
+                if (!has_points(options, points, ends, band)) continue;
                 const auto at = static_cast<std::size_t>(
                     std::lround((band + 0.5) / options.bands * static_cast<double>(boot.level.size() - 1)));
                 const double force_N = value_N(calibration.profile.curve, boot.level[at]);

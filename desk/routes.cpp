@@ -153,7 +153,8 @@ void take_upload(const Request& req, const httplib::ContentReader& read_content,
                             std::to_string(sender.device) + " at " + sender.address;
     std::optional<UploadRefused> refused;
     try {
-        const auto incoming = desk.uploads->begin(bytes);
+        const std::string sha256 = lower_case(req.get_header_value("X-Content-SHA256"));
+        const auto incoming = desk.uploads->begin(bytes, sha256);
         const bool whole = read_content([&](const char* data, std::size_t size) {
             try {
                 incoming->add({data, size});
@@ -164,7 +165,7 @@ void take_upload(const Request& req, const httplib::ContentReader& read_content,
         });
         if (refused) throw UploadRefused(*refused);
         if (!whole) throw UploadRefused(400, "cut off on its way");
-        const auto stored = incoming->finish(lower_case(req.get_header_value("X-Content-SHA256")), sender);
+        const auto stored = incoming->finish(sha256, sender);
         fields["name"] = stored.name;
         fields["fresh"] = stored.fresh;
         desk.events.tell("upload", who + (stored.fresh ? " -> " : ", there already: ") + stored.name, fields);

@@ -160,27 +160,29 @@ void Uploads::append_row(const std::string& sha256, std::uint64_t bytes, const S
     indexed_.insert(sha256);
 }
 
-std::unique_ptr<Uploads::Incoming> Uploads::begin(std::uint64_t bytes) {
+std::unique_ptr<Uploads::Incoming> Uploads::begin(std::uint64_t bytes, std::string_view expected_sha256) {
     if (bytes > limits_.upload_bytes) {
         throw UploadRefused(
             413, std::to_string(bytes) + " bytes, at most " + std::to_string(limits_.upload_bytes) + " in one upload");
     }
+    std::uint64_t counted = bytes;
     {
         const std::lock_guard lock(mutex_);
-        if (used_ + bytes + kRow_bytes > limits_.total_bytes)
+        if (indexed_.count(std::string(expected_sha256)) != 0) counted = 0;
+        if (counted > 0 && used_ + counted + kRow_bytes > limits_.total_bytes)
             throw UploadRefused(507, "the desk has taken as much as it may");
-        used_ += bytes;
+        used_ += counted;
     }
     try {
-        return std::unique_ptr<Incoming>(new Incoming(*this, bytes));
+        return std::unique_ptr<Incoming>(new Incoming(*this, bytes, counted));
     } catch (...) {
-        used_ -= bytes;
+        used_ -= counted;
         throw;
     }
 }
 
-Uploads::Incoming::Incoming(Uploads& uploads, std::uint64_t bytes)
-    : uploads_(uploads), announced_(bytes), hash_(std::make_unique<Hash>()) {
+Uploads::Incoming::Incoming(Uploads& uploads, std::uint64_t bytes, std::uint64_t counted)
+    : uploads_(uploads), announced_(bytes), counted_(counted), hash_(std::make_unique<Hash>()) {
     std::string name;
     {
         const std::lock_guard lock(uploads_.mutex_);
@@ -194,7 +196,7 @@ Uploads::Incoming::Incoming(Uploads& uploads, std::uint64_t bytes)
 Uploads::Incoming::~Incoming() {
     if (fd_ >= 0) ::close(fd_);
     ::unlink(aside_.c_str());
-    uploads_.used_ -= announced_;  // 0 once it is stored
+    uploads_.used_ -= counted_;  // 0 once it is stored
 }
 
 void Uploads::Incoming::add(std::string_view bytes) {
@@ -219,7 +221,10 @@ Uploads::Incoming::Stored Uploads::Incoming::finish(std::string_view expected_sh
         throw UploadRefused(507, std::string("the desk's disk takes no more: ") + std::strerror(errno));
     const fs::path target = uploads_.folder_ / stored.name;
     stored.fresh = files::rename_to_new(aside_, target);
-    if (stored.fresh) announced_ = 0;  // these bytes stay counted as used
+    if (stored.fresh) {  // these bytes stay counted as used
+        uploads_.used_ += received_ - counted_;
+        counted_ = 0;
+    }
     if (!stored.fresh && fs::file_size(target) != received_) {
         throw std::runtime_error(target.string() + ": is there with another content than its name says");
     }

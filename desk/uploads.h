@@ -69,17 +69,19 @@ class Uploads {
 
       private:
         friend class Uploads;
-        Incoming(Uploads& uploads, std::uint64_t bytes);
+        Incoming(Uploads& uploads, std::uint64_t bytes, std::uint64_t counted);
         Uploads& uploads_;
         std::uint64_t announced_;
+        std::uint64_t counted_;  // as used
         std::uint64_t received_ = 0;
         std::filesystem::path aside_;
         int fd_ = -1;
         struct Hash;
         std::unique_ptr<Hash> hash_;
     };
-    // Throws UploadRefused if there is no room for so many bytes. `Incoming` must not outlive this.
-    std::unique_ptr<Incoming> begin(std::uint64_t bytes);
+    // Throws UploadRefused if there is no room for so many bytes; what is stored already, by its hash, needs none.
+    // `Incoming` must not outlive this.
+    std::unique_ptr<Incoming> begin(std::uint64_t bytes, std::string_view expected_sha256 = {});
 
     std::uint64_t stored_bytes() const { return used_; }
     const std::filesystem::path& folder() const { return folder_; }

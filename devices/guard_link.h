@@ -25,6 +25,8 @@ struct GuardMessage {
     double value[kMostValues]{};
 };
 inline constexpr std::size_t kGuardHead_bytes = 8;
+// A guard that reports nothing for so long, not even that it is there, is a fault: guard_silent.
+inline constexpr double kGuardSilence_s = 0.25;
 
 // Bytes of a message that count. `received`: bytes that came. A message of another length or an unknown word is none.
 std::size_t size_of(const GuardMessage& message) noexcept;

@@ -112,6 +112,12 @@ bool GuardProcess::poll(RigReport& out) noexcept {
         newest_ = report;
         fresh = true;
     }
+    const double now_s = steady_s();
+    if (fresh) reported_s_ = now_s;
+    if (newest_.fault == Fault::none && reported_s_ > 0.0 && now_s - reported_s_ > kGuardSilence_s) {
+        newest_.fault = Fault::guard_silent;
+        fresh = true;
+    }
     if (n < 0 && newest_.fault != Fault::guard_gone) {
         newest_.fault = Fault::guard_gone;
         newest_.driven = newest_.ready = false;

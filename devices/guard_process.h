@@ -52,7 +52,7 @@ class GuardProcess {
     // One value for each actuator of the rig, in its order and unit: N, m of cable, Pa. Never waits.
     void send(std::span<const double> values) noexcept { link_.send(GuardWord::command, values); }
     // The newest report, by the loop's thread. Returns false, and leaves `out` as it is, if there is nothing new. Once the guard
-    // has ended its fault is guard_gone.
+    // has ended its fault is guard_gone; while it tells nothing, guard_silent.
     bool poll(RigReport& out) noexcept;
 
     void stop() noexcept { link_.send(GuardWord::stop); }        // F12: latched; by any thread
@@ -63,7 +63,8 @@ class GuardProcess {
     ActuatorRig rig_;
     GuardLink link_;
     RigReport newest_;
-    bool again_ = false;  // wait_until_ready() has taken it, the loop has not
+    double reported_s_ = 0.0;  // when that came
+    bool again_ = false;       // wait_until_ready() has taken it, the loop has not
 };
 
 // What keeps a line from being driven, for messages: "port 'motors' at /dev/ttyUSB0: nothing answers".

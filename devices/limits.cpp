@@ -81,11 +81,15 @@ std::string_view text(Fault fault) {
             return "the guard has ended (start Palpa again)";
         case Fault::arm_error:
             return "the arm reports a fault of its own";
+        case Fault::guard_silent:
+            return "nothing comes from the guard";
     }
     return "";
 }
 
-bool latches(Fault fault) { return fault != Fault::none && fault != Fault::silence && fault != Fault::too_fast; }
+bool latches(Fault fault) {
+    return fault != Fault::none && fault != Fault::silence && fault != Fault::too_fast && fault != Fault::guard_silent;
+}
 
 Limits limits_of(const ArmDevice* arm, const PinDevice* pins, double force_limit_N) {
     Limits limits;

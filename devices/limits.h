@@ -29,11 +29,12 @@ enum class Fault : std::uint8_t {
     parent_gone,      // the program that runs the loop has ended
     guard_gone,       // the guard's process has ended
     arm_error,        // the arm says that it has a fault of its own
+    guard_silent,     // the guard's process is there and tells nothing; passes by itself
 };
-inline constexpr std::size_t kFaults = 13;
+inline constexpr std::size_t kFaults = 14;
 std::string_view text(Fault fault);
 
-// Whether the fault stays until release(). Silence and too_fast pass by themselves.
+// Whether the fault stays until release(). silence, guard_silent and too_fast pass by themselves.
 bool latches(Fault fault);
 
 struct Limits {

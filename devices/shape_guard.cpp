@@ -50,8 +50,8 @@ bool ShapeGuard::poll() noexcept {
     const double now_s = steady_s();
     if (fresh) reported_s_ = now_s;
     if (reported_s_ > 0.0 && now_s - reported_s_ > kGuardSilence_s && newest_.fault == Fault::none) {
-        ++newest_.count[static_cast<std::size_t>(Fault::silence)];
-        newest_.fault = Fault::silence;
+        ++newest_.count[static_cast<std::size_t>(Fault::guard_silent)];
+        newest_.fault = Fault::guard_silent;
     }
     if (n < 0) {
         if (newest_.fault != Fault::guard_gone) ++newest_.count[static_cast<std::size_t>(Fault::guard_gone)];

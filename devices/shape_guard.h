@@ -21,9 +21,6 @@ files::Json shape_rig_json(const ShapeRig& rig);
 ShapeRig read_shape_rig(files::JsonReader reader);
 Limits limits_of(const ShapeRig& rig);
 
-// A guard that says nothing for so long, not even that it is there, is a fault: silence.
-inline constexpr double kGuardSilence_s = 0.25;
-
 // A command's values: those of the arm (force_N, feedforward_N, depth_m, mode), then the heights of the pins.
 inline constexpr std::size_t kArmValues = 4;
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "files/input_error.h"
+#include "files/printable.h"
 #include "files/text.h"
 
 namespace palpa::files {
@@ -131,7 +132,19 @@ double Table::finite_number(std::size_t column) const {
     return value;
 }
 
-Table read_tsv(const std::filesystem::path& path) { return Table(read_text(path), path.string(), '\t'); }
+Table read_tsv(const std::filesystem::path& path) {
+    std::string text = read_text(path);
+    if (!is_utf8(text)) {  // names of another encoding would be told apart here and be one in JSON
+        std::string_view rest = text;
+        for (int line = 1; !rest.empty(); ++line) {
+            const std::string_view here = rest.substr(0, rest.find('\n'));
+            if (!is_utf8(here))
+                throw bad_input(path.string(), "line " + std::to_string(line), shown(here), "text in UTF-8");
+            rest.remove_prefix(std::min(here.size() + 1, rest.size()));
+        }
+    }
+    return Table(std::move(text), path.string(), '\t');
+}
 Table read_csv(const std::filesystem::path& path) { return Table(read_text(path), path.string(), ','); }
 
 }  // namespace palpa::files

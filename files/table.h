@@ -48,7 +48,7 @@ class Table {
     std::vector<std::string_view> fields_;
 };
 
-Table read_tsv(const std::filesystem::path& path);
+Table read_tsv(const std::filesystem::path& path);  // throws InputError for text that is not UTF-8
 Table read_csv(const std::filesystem::path& path);
 
 }  // namespace palpa::files

@@ -87,9 +87,9 @@ std::optional<PairedCounts> paired_counts(const std::vector<Judgement>& a, const
 
 Replication replicate(const Proportion& a, const Proportion& b, double z) {
     Replication out;
-    out.delta = std::abs(a.p() - b.p());
+    out.delta = a.p() - b.p();
     out.combined_interval = combined_interval(a, b, z);
-    out.significant = out.delta > out.combined_interval;
+    out.significant = std::abs(out.delta) > out.combined_interval;
     out.newcombe = newcombe(a, b, z);
     out.p = combined_p(a, b);
     return out;

@@ -16,9 +16,9 @@ namespace palpa::study {
 
 // The test of Li et al., which takes all nodules of all people as independent.
 struct Replication {
-    double delta = 0.0;  // |p_a - p_b| of the pooled shares
+    double delta = 0.0;  // p_a - p_b of the pooled shares
     double combined_interval = 0.0;
-    bool significant = false;  // delta > combined_interval, uncorrected
+    bool significant = false;  // |delta| > combined_interval, uncorrected
     Interval newcombe;         // of p_a - p_b
     double p = 1.0;
     double p_holm = 1.0;  // corrected for all pairs of conditions

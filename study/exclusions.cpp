@@ -144,10 +144,12 @@ void add_exclusion(const fs::path& directory, const Exclusion& exclusion) {
                                "a trial that " + exclusion.participant + " has finished");
     }
     for (const Exclusion& other : read_exclusions(directory)) {
-        if (other.participant != exclusion.participant || other.trial != exclusion.trial) continue;
+        const bool within =
+            !other.trial || other.trial == exclusion.trial;  // who is left out as a whole has no trial left
+        if (other.participant != exclusion.participant || !within) continue;
         throw files::bad_input(exclusions_file(directory).string(), "",
-                               "trial " + trial_text(other) + " of " + other.participant + " already, because " +
-                                   files::shown(other.reason),
+                               (other.trial ? "trial " + trial_text(other) : "all trials") + " of " +
+                                   other.participant + " already, because " + files::shown(other.reason),
                                "a trial that is not excluded yet");
     }
     append_line(exclusions_file(directory), kExclusionHeader,

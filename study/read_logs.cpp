@@ -41,7 +41,8 @@ struct Study {
     std::map<std::string, int> planned_condition;  // index in the protocol
     std::map<std::string, std::string> people;     // of participants.tsv: the group of each code
     Numbers numbers;
-    std::set<std::string> left_out;  // participants of whom all is excluded
+    std::map<std::string, int> places;  // in the plan, of the codes whose logs say so
+    std::set<std::string> left_out;     // participants of whom all is excluded
     std::set<std::pair<std::string, int>> left_out_trials;
     std::string sha256, sha256_in;                      // of the first trial that names a protocol
     std::unordered_map<std::size_t, std::string> seen;  // file of events by the hash of its text
@@ -120,6 +121,7 @@ class Subject {
             number = found.value_or(likely);
             known = found.has_value();
         }
+        if (known) study_.places[code_] = number;
         const PlannedParticipant plan = plan_participant(*study_.protocol, number);
         const bool same_orders = study_.identity->orders_version == kOrdersVersion;
         const auto person = study_.people.find(code_);
@@ -314,6 +316,21 @@ class Subject {
     std::string last_began_;
 };
 
+// A tablet counts its own participants: who begins there has that count's place, not that of who was to be replaced.
+void note_other_places(const Study& study, Observations& out) {
+    for (const Replacement& one : out.replacements) {
+        const auto left = study.places.find(one.participant), came = study.places.find(one.replaced_by);
+        if (left == study.places.end() || came == study.places.end()) continue;
+        const PlannedParticipant plan = plan_participant(*study.protocol, left->second);
+        const PlannedParticipant other = plan_participant(*study.protocol, came->second);
+        if (plan.group == other.group && plan.order_id == other.order_id) continue;
+        out.notes.push_back((study.directory / "replacements.tsv").string() + ": " + one.replaced_by +
+                            " has not the group and order of " + one.participant + ", whose place this is (number " +
+                            std::to_string(came->second) + " in the plan, and " + std::to_string(left->second) +
+                            "): tablets know of no replacement");
+    }
+}
+
 }  // namespace
 
 Observations read_study(const fs::path& directory) {
@@ -368,6 +385,7 @@ Observations read_study(const fs::path& directory) {
             out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index, r.chosen});
         }
     }
+    note_other_places(study, out);
     std::set<std::string> begun;
     for (const Progress& row : out.progress) begun.insert(row.participant);
     for (Progress& row : out.progress) row.counts = begun.count(row.replaced_by) == 0;

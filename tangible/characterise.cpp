@@ -81,11 +81,13 @@ PressFigures figures_of(std::vector<PressTick> ticks) {
         wanted += tick.depth_m * tick.wanted_N;
         rendered += tick.depth_m * tick.rendered_N;
         out.saturated_share += tick.command.saturated ? 1.0 : 0.0;
+        out.rate_limited_share += tick.command.rate_limited ? 1.0 : 0.0;
         out.failed_ticks += tick.command.fault != TickFault::none ? 1 : 0;
     }
     if (out.ticks.empty()) return out;
     const auto n = static_cast<double>(out.ticks.size());
     out.saturated_share /= n;
+    out.rate_limited_share /= n;
     out.failed_share = out.failed_ticks / n;
     if (depth2 > 0.0) {
         out.wanted_N_per_m = wanted / depth2;

@@ -33,6 +33,7 @@ struct PressFigures {
     double force_worst_percent = 0.0;  // the greatest of them
     double hysteresis_N = 0.0;         // mean of rendered force pressing minus releasing, at the same depths
     double saturated_share = 0.0;      // of the ticks
+    double rate_limited_share = 0.0;   // of the ticks
     int failed_ticks = 0;              // held or relaxed, or without equilibrium of the plant
     double failed_share = 0.0;         // of the ticks
     std::vector<PressTick> ticks;

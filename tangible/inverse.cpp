@@ -63,6 +63,18 @@ void bound(const Tick& tick, const DeviceState& state, int unknown, double& lowe
     lower = upper = std::clamp(state.pretension[static_cast<std::size_t>(driver)], lower, upper);
 }
 
+// Whether an actuator with this driver stands at a limit of its own, and not only as far as its rate lets it go.
+bool at_limit(const Tick& tick, int driver, double value) {
+    for (int j = 0; j < tick.model.n_actuators(); ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        const SoftActuator& actuator = tick.model.actuators[at];
+        const double slack = 1e-9 * (actuator.upper - actuator.lower);
+        if (tick.model.driver[at] == driver && (value <= actuator.lower + slack || value >= actuator.upper - slack))
+            return true;
+    }
+    return false;
+}
+
 // Rows of what is observed against unknown forces of the actuators; tilts count by the radius of the effector.
 BoundedProblem problem_of(const Tick& tick, const DeviceState& state, const Response& response, InverseAnswer& answer) {
     const DeviceModel& model = tick.model;
@@ -134,8 +146,15 @@ SmallColumn solve_for_forces(const Tick& tick, const DeviceState& state, const R
         if (row > 0) answer.tilt_residual[static_cast<std::size_t>(row - 1)] = solved.residual(row) / lever_m;
     }
     answer.rank = solved.rank;
-    const bool missed = solved.residual.norm() > 1e-5 * tick.model.size_m && !at_floor(tick);
-    answer.limited_by = missed && solved.limiting >= 0 ? tick.driver[static_cast<std::size_t>(solved.limiting)] : -1;
+    answer.limited_by = -1;
+    answer.rate_limited = false;
+    if (solved.limiting >= 0 && !at_floor(tick) && solved.residual.norm() > 1e-5 * tick.model.size_m) {
+        const int driver = tick.driver[static_cast<std::size_t>(solved.limiting)];
+        if (at_limit(tick, driver, solved.x(solved.limiting)))
+            answer.limited_by = driver;
+        else
+            answer.rate_limited = true;
+    }
     return p;
 }
 

@@ -42,11 +42,12 @@ struct InverseAnswer {
     Lengths command{};        // lengths of cables, volumes of cavities: the command by position
     double residual_m = 0.0;  // of the depth, as predicted: negative where the effector stays too high
     std::array<double, 2> tilt_residual{};
-    int rank = 0;            // of W, with ties
-    unsigned active = 0;     // bit j: actuator j is at a bound, or at a slew limit
-    int limited_by = -1;     // the actuator that keeps the target out of reach
-    int iterations = 0;      // Newton steps
-    bool converged = false;  // the last step changed nothing (1e-9 of the body's size)
+    int rank = 0;               // of W, with ties
+    unsigned active = 0;        // bit j: actuator j is at a bound, or at a slew limit
+    int limited_by = -1;        // the actuator whose limit keeps the target out of reach
+    bool rate_limited = false;  // the target is not reached in this tick, as an actuator goes no faster
+    int iterations = 0;         // Newton steps
+    bool converged = false;     // the last step changed nothing (1e-9 of the body's size)
     int factorisations = 0;
     // the terms of the problem, for screens: rows depth, tilt, tilt; columns actuators
     Eigen::Matrix<double, 3, kMostActuators> W = Eigen::Matrix<double, 3, kMostActuators>::Zero();

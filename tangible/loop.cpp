@@ -67,6 +67,7 @@ void copy_terms(const InverseAnswer& answer, TangibleCommand& out) {
     out.iterations = answer.iterations;
     out.converged = answer.converged;
     out.saturated = out.saturated || answer.limited_by >= 0;
+    out.rate_limited = answer.rate_limited;
 }
 
 // Holds the last valid command for a while, and then relaxes the device until the finger is lifted.

@@ -51,9 +51,10 @@ struct TangibleCommand {
     Lengths length{};       // m; minus m^3
     std::int32_t actuators = 0;
     bool pressed = false;
-    bool saturated = false;  // the actuators cannot reach what is wanted, or the tissue is not known as deep
-    bool held = false;       // the last valid command is repeated
-    bool relaxed = false;    // the lower bounds are commanded
+    bool saturated = false;     // the actuators cannot reach what is wanted, or the tissue is not known as deep
+    bool rate_limited = false;  // they cannot be there within this tick
+    bool held = false;          // the last valid command is repeated
+    bool relaxed = false;       // the lower bounds are commanded
     TickFault fault = TickFault::none;
     // the terms of the inverse problem, for screens
     Actuation compliance{};  // row of W: m/N, m/Pa

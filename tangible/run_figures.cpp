@@ -9,6 +9,7 @@ void add(const TangibleCommand& tick, double rendered_N, TickFigures& figures) {
     ++figures.ticks;
     figures.pressed_ticks += tick.pressed;
     figures.saturated_ticks += tick.saturated;
+    figures.rate_limited_ticks += tick.rate_limited;
     figures.held_ticks += tick.held;
     figures.relaxed_ticks += tick.relaxed;
     if (tick.fault != figures.last && tick.fault != TickFault::none)
@@ -41,8 +42,11 @@ files::Json figures_json(const TangiblePlan& plan, const TickFigures& ticks, con
     json["tick_us"] = {{"p50", files::number_or_null(clock.tick_p50_us)},
                        {"p99", files::number_or_null(clock.tick_p99_us)}};
     json["force_rms_percent"] = files::number_or_null(force_rms_percent(ticks));
-    json["saturated_share"] =
-        static_cast<double>(ticks.saturated_ticks) / static_cast<double>(std::max<std::int64_t>(ticks.ticks, 1));
+    const auto share = [&](std::int64_t some) {
+        return static_cast<double>(some) / static_cast<double>(std::max<std::int64_t>(ticks.ticks, 1));
+    };
+    json["saturated_share"] = share(ticks.saturated_ticks);
+    json["rate_limited_share"] = share(ticks.rate_limited_ticks);
     json["held_ms"] = period_ms * static_cast<double>(ticks.held_ticks);
     json["relaxed_ms"] = period_ms * static_cast<double>(ticks.relaxed_ticks);
     files::Json faults = files::Json::array();

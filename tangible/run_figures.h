@@ -16,6 +16,7 @@ struct TickFigures {
     std::int64_t ticks = 0;
     std::int64_t pressed_ticks = 0;
     std::int64_t saturated_ticks = 0;
+    std::int64_t rate_limited_ticks = 0;
     std::int64_t held_ticks = 0;
     std::int64_t relaxed_ticks = 0;
     std::int64_t compared_ticks = 0;  // pressed, and with a rendered force
@@ -41,7 +42,7 @@ struct ClockFigures {
 };
 
 // Keys: device, fidelity, command, ticks, missed_ticks, period_us {p50, p99, worst}, tick_us {p50, p99}, force_rms_percent,
-// saturated_share, held_ms, relaxed_ms, faults [{fault, times}], notes.
+// saturated_share, rate_limited_share, held_ms, relaxed_ms, faults [{fault, times}], notes.
 files::Json figures_json(const TangiblePlan& plan, const TickFigures& ticks, const ClockFigures& clock);
 
 }  // namespace palpa::tangible

@@ -99,7 +99,7 @@ void record(RecordArguments& arguments) {
         record.options.range = {arguments.range[0], arguments.range[1]};
     }
     const files::Json result = record_calibration(record);
-    if (result["points"] == 0 && result["below_zero"].get<int>() > 0)
+    if (result["wrong_sign"].get<bool>())
         std::fprintf(stderr, "palpa: warning: the force was below zero in a press: reverse the sign of %s\n",
                      record.sensor.rfind("serial:", 0) == 0 ? "--N-per-count" : "--axis");
     const bool silent = result.contains("sensor") && result["sensor"]["health"].value("received", 0) == 0;

@@ -121,6 +121,7 @@ files::Json press_json(const PressedTissue& tissue, const PressFigures& figures)
             {"force_worst_percent", figures.force_worst_percent},
             {"hysteresis_N", figures.hysteresis_N},
             {"saturated_share", figures.saturated_share},
+            {"rate_limited_share", figures.rate_limited_share},
             {"failed_ticks", figures.failed_ticks},
             {"failed_share", figures.failed_share}};
 }
@@ -195,11 +196,14 @@ void print_press(const files::Json& press) {
         failed_share > kMostly ? "NOT RENDERED, the figures are of a device that mostly rested: " : "rendered ";
     std::printf(
         "  %s: %s%.4g N/mm of %.4g, force off by %.3g %% rms (%.3g %% at worst), hysteresis %.3g N, "
-        "saturated in %.3g %% of the ticks, relaxed, held or without equilibrium in %.3g %%\n",
+        "saturated in %.3g %% of the ticks, as fast as the drives go in %.3g %%, relaxed, held or without equilibrium "
+        "in "
+        "%.3g %%\n",
         press["tissue"].get<std::string>().c_str(), found, press["rendered_N_per_mm"].get<double>(),
         press["wanted_N_per_mm"].get<double>(), press["force_rms_percent"].get<double>(),
         press["force_worst_percent"].get<double>(), press["hysteresis_N"].get<double>(),
-        100.0 * press["saturated_share"].get<double>(), 100.0 * failed_share);
+        100.0 * press["saturated_share"].get<double>(), 100.0 * press["rate_limited_share"].get<double>(),
+        100.0 * failed_share);
 }
 
 void print_characterised(const files::Json& json) {

@@ -124,9 +124,12 @@ void print_run(const files::Json& result) {
     if (!result["force_rms_percent"].is_null())
         std::printf("  rendered force off the wanted one by %.3g %% (rms, of the greatest wanted force)\n",
                     result["force_rms_percent"].get<double>());
-    std::printf("  saturated in %.3g %% of the ticks, last command held for %.3g ms, relaxed for %.3g ms\n",
-                100.0 * result["saturated_share"].get<double>(), result["held_ms"].get<double>(),
-                result["relaxed_ms"].get<double>());
+    std::printf(
+        "  saturated in %.3g %% of the ticks, as fast as the drives go in %.3g %%, last command held for %.3g ms, "
+        "relaxed "
+        "for %.3g ms\n",
+        100.0 * result["saturated_share"].get<double>(), 100.0 * result["rate_limited_share"].get<double>(),
+        result["held_ms"].get<double>(), result["relaxed_ms"].get<double>());
     for (const auto& fault : result["faults"])
         std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),
                     fault["times"].dump().c_str());

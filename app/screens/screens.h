@@ -113,7 +113,10 @@ struct StudyForm {
     // How many codes the step had refused when the field last got the focus.
     int refused = -1;
     std::vector<std::string> answers;  // to the items of this step, "" = not answered
-    bool too_early = false;            // the last digit came before it could be told from one for the step before
+    // The last digit came before it could be told from one for the step before. Enter then says so once, and goes on
+    // when it is pressed again.
+    bool too_early = false;
+    bool told_too_early = false;
     study::TypedAnswers typed;
     double clock_began_s = 0.0;  // of `typed`; 0: the clock is stopped
 };

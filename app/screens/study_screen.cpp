@@ -181,7 +181,9 @@ void take_digit(const StudyRun& run, double now_s, const Gui& gui, StudyForm& fo
         for (int digit = *items[i].from; digit <= *items[i].to; ++digit) {
             if (!gui.pressed('0' + digit) && !gui.pressed(platform::key::pad_0 + digit)) continue;
             form.too_early = is_double_enter(run, now_s);
-            if (!form.too_early) form.answers[i] = std::to_string(digit);
+            if (form.too_early) return;
+            form.told_too_early = false;
+            form.answers[i] = std::to_string(digit);
         }
         return;
     }
@@ -198,7 +200,10 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     const auto* rated = std::get_if<step::Ratings>(&run.step);
     title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
     if (rated != nullptr) paragraph(words::kAboutLastTrials);  // a condition's name would tell what is compared
-    paragraph(words::kMayLeaveOpen);
+    if (form.told_too_early)
+        warning_paragraph(words::kDigitTooEarly);
+    else
+        paragraph(words::kMayLeaveOpen);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
@@ -217,7 +222,9 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     }
     end_scrolled("items", gui);
     const bool open = std::all_of(answers.begin(), answers.end(), [](const std::string& a) { return a.empty(); });
-    const bool accident = open && (is_double_enter(run, now_s) || (form.too_early && enter_pressed(gui)));
+    const bool quick = form.too_early && enter_pressed(gui);
+    const bool accident = open && (is_double_enter(run, now_s) || quick);
+    if (quick) form.too_early = false, form.told_too_early = true;
     if (forward(words::kContinue, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
 }
 

@@ -604,6 +604,8 @@ inline constexpr const char* kOnlyInPractice = "You get this feedback only durin
 inline constexpr const char* kQuestionsFirst = "About you";
 inline constexpr const char* kHowWasIt = "How was it?";
 inline constexpr const char* kMayLeaveOpen = "You may skip any question.";
+inline constexpr const char* kDigitTooEarly =
+    "The digit came before this page could take it: press it again, or Enter to leave the questions open.";
 inline constexpr const char* kDeviceMissing = "The {} is not connected";
 inline constexpr const char* kDeviceIsBack = "The {} is connected";
 inline constexpr const char* kDeviceNoPressure = "The {} does not measure pressure";

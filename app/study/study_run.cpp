@@ -65,6 +65,7 @@ bool plain(const std::string& code) { return code.size() <= 20 && study::is_code
 
 const char* what_is_wrong(const std::string& code) {
     if (code.empty()) return "Enter a code of up to 20 letters and digits.";
+    if (study::names_a_sum(code)) return "Tables take this code for a row of sums. Enter another one.";
     return study::reads_as_missing(code)
                ? "Tables in pandas and R take this code for a missing value. Enter another one."
                : "Enter up to 20 letters and digits.";

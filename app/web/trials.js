@@ -19,6 +19,8 @@ const palpaTrials = (() => {
     const unsaved = new Map(); // what the storage would not take, by name: {trial, files}; tried again, also once exported
     const restoring = new Set(); // parts of an earlier page that are not a trial yet
     let studyFiles = [];         // of earlier pages
+    let carried = {};            // what a study goes on from, by path, beside a storage that is full
+    let isCarried = true;        // else it is lost with this page
     let designs = [];            // of earlier pages
     let parts = [];
     let database = null;
@@ -136,6 +138,25 @@ const palpaTrials = (() => {
         if (gone.length > 0) tell(palpaFilled(palpaWords.lost, gone.length, gone.join(', ')));
     };
 
+    // A trial that is at the desk or exported is not asked for again, though the storage has no room to say so.
+    const carry = () => {
+        const files = {...carried};
+        for (const {trial, files: state} of unsaved.values()) {
+            if (trial.sent || trial.exported) for (const {path, text} of state) files[path] = text;
+        }
+        isCarried = remember('palpa-study', Object.keys(files).length > 0 ? JSON.stringify(files) : null);
+    };
+    // What an earlier page carried, into the storage if there is room now.
+    const takeCarried = async () => {
+        const files = JSON.parse(recall('palpa-study') || '{}');
+        const entries = Object.entries(files).map(([path, text]) => ({path, text}));
+        if (entries.length === 0) return;
+        studyFiles = [...studyFiles.filter(({path}) => !(path in files)), ...entries];
+        carried = files;
+        await request('readwrite', (store) => { for (const file of entries) store.put(file); }, ['study']).then(() => { carried = {}; }).catch(() => {});
+        carry();
+    };
+
     // Two pages would give the same names. The lock goes with the page that holds it.
     const isAlone = () => new Promise((resolve) => {
         if (!navigator.locks) return resolve(noOtherAnswers());
@@ -168,6 +189,7 @@ const palpaTrials = (() => {
             database.onclose = () => { database = null; tell(palpaWords.storageClosed); };
             for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
             studyFiles = await request('readonly', (store) => store.getAll(), ['study']);
+            await takeCarried();
             designs = await request('readonly', (store) => store.getAll(), ['designs']);
             parts = await request('readonly', (store) => store.getAll(), ['parts']);
             for (const part of parts) restoring.add(part.name);
@@ -185,7 +207,7 @@ const palpaTrials = (() => {
         const again = async () => { saveAgain(); if (isPaired() || toSend().length > 0) await askDesk(); send(); changed(); };
         setInterval(again, kAgain_ms);
         window.addEventListener('online', again);
-        window.addEventListener('beforeunload', (event) => { if (inDanger() > 0) event.preventDefault(); });
+        window.addEventListener('beforeunload', (event) => { if (inDanger() > 0 || !isCarried) event.preventDefault(); });
         send();
     };
 
@@ -225,7 +247,13 @@ const palpaTrials = (() => {
             for (const file of files) study.put(file);
             if (isOver(trial)) partsStore.delete(IDBKeyRange.bound([trial.name], [trial.name, []]));
         }, ['trials', 'study', 'parts']);
+        for (const {path} of files) delete carried[path];
+        for (const [name, older] of unsaved) { // must not go over it later
+            if (name === trial.name) break;
+            older.files = older.files.filter((old) => !files.some(({path}) => path === old.path));
+        }
         unsaved.delete(trial.name);
+        carry();
         solve(trial.name, '');
         note(trial);
         noteNames();
@@ -318,7 +346,7 @@ const palpaTrials = (() => {
         const sent = {...trial, text: '', sent: true};
         if (unsaved.has(name)) {
             unsaved.get(name).trial = sent; // what the study goes on from still has no place
-            await save(sent, unsaved.get(name).files, false).catch(() => {});
+            await save(sent, unsaved.get(name).files, false).catch(carry);
         } else {
             await request('readwrite', (store) => store.put(sent));
         }
@@ -409,6 +437,7 @@ const palpaTrials = (() => {
             download(`palpa-trials${title}-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files: [...files.values()]}, null, 1) + '\n');
         }
         for (const {trial} of unsaved.values()) trial.exported = true;
+        carry();
         solve(...unsaved.keys());
         for (const trial of kept.filter(isOver)) {
             note({...trial, exported: true});

@@ -153,6 +153,11 @@ files::Json health_json(const devices::SensorHealth& health) {
             {"faults", health.faults},       {"invalid", health.invalid}};
 }
 
+// Whether presses gave nothing but forces below zero, so far in this recording.
+bool pulls(const Recording& recording) {
+    return recording.session.below_zero > 0 && recording.session.points.size() <= recording.resumed;
+}
+
 files::Json result_of(const Recording& recording) {
     const Knowledge knowledge = knowledge_of(recording.arguments.options, recording.session.points);
     files::Json json{{"points", recording.session.points.size()},
@@ -162,6 +167,7 @@ files::Json result_of(const Recording& recording) {
                      {"relative_half_interval", knowledge.band_error},
                      {"samples", recording.samples},
                      {"below_zero", recording.session.below_zero},
+                     {"wrong_sign", pulls(recording)},
                      {"outside_range", recording.outside},
                      {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
@@ -314,7 +320,7 @@ std::string advice(const Recording& recording) {
     if (recording.silent) return "the sensor is silent";
     if (recording.invalid) return "the sensor is overloaded";
     if (recording.sensor && std::isnan(recording.session.zero_N)) return "do not touch (zero)";
-    if (recording.session.below_zero > 0 && recording.session.points.empty()) return "the force falls: wrong sign";
+    if (pulls(recording)) return "the force falls: wrong sign";
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     if (band < 0) return "lift the pen";
     return "press to " + files::short_number(100.0 * band / options.bands) + " - " +

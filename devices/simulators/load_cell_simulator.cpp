@@ -24,7 +24,9 @@ int main(int argc, char** argv) {
     add_stream_options(app, options);
     add_link_option(app, link);
     app.add_option("--first-us", first_us, "of the clock, to see it wrap around");
-    app.add_option("--counts-per-N", counts_per_N)->check(CLI::Range(1e-6, 1e12))->capture_default_str();
+    app.add_option("--counts-per-N", counts_per_N, "below zero: the cell pulls")
+        ->check(CLI::Range(-1e12, 1e12))
+        ->capture_default_str();
     app.add_option("--zero", zero, "counts without load")->capture_default_str();
     app.add_option("--garble", garble, "share of the lines with a broken character")->check(CLI::Range(0.0, 1.0));
     CLI11_PARSE(app, argc, argv);

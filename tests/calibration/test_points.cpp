@@ -198,6 +198,28 @@ TEST_CASE("points: silence below activation and the plateau above saturation are
     CHECK(std::isnan(ends_of(rows, {0.0, 1.0}).saturation_N));
 }
 
+TEST_CASE("points: noise in share of the force is no saturation, however many rows there are") {
+    for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+        for (const int n : {300, 1000, 5000}) {
+            CAPTURE(seed);
+            CAPTURE(n);
+            std::mt19937 random(seed);
+            std::uniform_real_distribution<double> level(0.0, 0.9999);
+            std::normal_distribution<double> noise(0.0, 0.06);
+            CalibrationRows rows, saturated;
+            for (int i = 0; i < n; ++i) {
+                rows.level.push_back(level(random));
+                rows.force_N.push_back(0.1 * std::exp(4.0 * rows.level.back()) * (1.0 + noise(random)));
+                rows.line.push_back(static_cast<std::size_t>(i + 2));
+            }
+            CHECK(std::isnan(ends_of(rows, {0.0, 1.0}).saturation_N));
+            saturated = rows;  // the pen reports no more than 0.8
+            for (double& one : saturated.level) one = std::min(one, 0.8);
+            CHECK(ends_of(saturated, {0.0, 1.0}).saturation_level == close_to(0.78));
+        }
+    }
+}
+
 TEST_CASE("points: the range of counts is the next power of two") {
     CHECK(level_range_of({0.0, 0.9}).highest == 1.0);
     CHECK(level_range_of({0.0, 1023.0}).highest == 1023.0);

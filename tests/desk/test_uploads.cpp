@@ -99,6 +99,26 @@ TEST_CASE("uploads: what is too long, too short, cut off or changed leaves nothi
     CHECK(status_of([&] { uploads.begin(1000); }) == 507);
 }
 
+TEST_CASE("uploads: a full desk answers a repeated upload as one that it has") {
+    const TemporaryFolder folder;
+    std::vector<std::string> notes;
+    UploadLimits limits;
+    limits.total_bytes = 2000;
+    Uploads uploads(folder / "in", limits, notes);
+    const std::string kept(1000, 'a');
+    CHECK(send(kept, uploads).fresh);
+    const std::uint64_t used = uploads.stored_bytes();
+    CHECK(status_of([&] { uploads.begin(1000); }) == 507);
+    {
+        const auto again = uploads.begin(1000, sha256_hex(kept));
+        again->add(kept);
+        CHECK_FALSE(again->finish(sha256_hex(kept), kSender).fresh);
+    }
+    CHECK(uploads.stored_bytes() == used);
+    uploads.begin(1000, sha256_hex(kept))->add("cut off");
+    CHECK(uploads.stored_bytes() == used);
+}
+
 TEST_CASE("uploads: after a kill asides go, and whole files find their row") {
     const TemporaryFolder folder;
     std::vector<std::string> notes;

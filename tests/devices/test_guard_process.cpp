@@ -416,8 +416,8 @@ TEST_CASE("guard: one that stands still is a fault while it does, and lets every
             });
         };
         ::kill(guard.pid(), SIGSTOP);
-        CHECK(sent_until(Fault::silence));
-        CHECK(guard.newest().count[static_cast<std::size_t>(Fault::silence)] >= 1);
+        CHECK(sent_until(Fault::guard_silent));
+        CHECK(guard.newest().count[static_cast<std::size_t>(Fault::guard_silent)] >= 1);
         ::kill(guard.pid(), SIGCONT);
         CHECK(sent_until(Fault::loop_silent));  // what had queued meanwhile is not new
         CHECK(soon([&] { return wires.highest_mm() < 0.05; }));
@@ -428,9 +428,10 @@ TEST_CASE("guard: one that stands still is a fault while it does, and lets every
     GuardProcess guard(wires.rig, PALPA_GUARD);
     driven(guard, wires);
     ::kill(guard.pid(), SIGSTOP);
-    for (int i = 0; i < 100; ++i) guard.send(halfway(wires.rig)), guard_nap(0.003);
-    ::kill(guard.pid(), SIGCONT);
     RigReport report;
+    for (int i = 0; i < 100; ++i) guard.send(halfway(wires.rig)), guard.poll(report), guard_nap(0.003);
+    CHECK(report.fault == Fault::guard_silent);
+    ::kill(guard.pid(), SIGCONT);
     CHECK(soon([&] {
         guard.send(halfway(wires.rig));
         guard.poll(report);

@@ -358,7 +358,7 @@ TEST_CASE("serve: uploads that are wrong leave nothing") {
     CHECK(status_of(upload("a", std::string(90000, 'a'), token, *client)) == 201);
     CHECK(status_of(upload("a", std::string(90000, 'b'), token, *client)) == 201);
     CHECK(status_of(upload("a", std::string(90000, 'c'), token, *client)) == 507);
-    CHECK(status_of(upload("a", std::string(90000, 'a'), token, *client)) == 507);
+    CHECK(status_of(upload("a", std::string(90000, 'a'), token, *client)) == 200);  // the desk has it already
     CHECK(place.uploads().size() == 3);
     CHECK(desk.end() == 0);
 }

@@ -3,7 +3,9 @@
 #include <type_traits>
 
 #include "files/table.h"
+#include "files/text.h"
 #include "tests/error_message.h"
+#include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::files;
@@ -53,6 +55,17 @@ TEST_CASE("table: a quote that nothing closes, or that closes too early, is refu
     CHECK(contains(said("x,y\n1,\"2\n3\",4\n"), "t.csv: line 2: found a quote that opens the field '\"2'"));
     CHECK(contains(said("x,y\n1,\"2\"3\n"), "expected one that closes it, at the end of the field"));
     CHECK(contains(said("\"x,y\n1,2\n"), "line 1: found a quote that opens the field"));
+}
+
+TEST_CASE("table: text in another encoding than UTF-8 is refused by line") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "d.tsv", "condition\ttp\nM\xc3\xbcller\t1\n");
+    Table table = read_tsv(folder / "d.tsv");
+    REQUIRE(table.next());
+    CHECK(table.field(0) == "M\xc3\xbcller");
+    write_text_atomically(folder / "d.tsv", "condition\ttp\nMeier\t1\nM\xfcller\t1\n");
+    CHECK(contains(message_of([&] { read_tsv(folder / "d.tsv"); }), "line 3: found 'M"));
+    CHECK(contains(message_of([&] { read_tsv(folder / "d.tsv"); }), "expected text in UTF-8"));
 }
 
 TEST_CASE("table: it stays where it is, as its fields point into its own text") {

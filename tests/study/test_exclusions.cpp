@@ -123,6 +123,12 @@ TEST_CASE(
     CHECK(contains(message_of([&] { add_exclusion(folder.path(), {"01", 1, "x"}); }), "no study.json"));
     add_exclusion(log, {"01", 1, "x"});
     CHECK(contains(refused({"01", 1, "y"}), "found trial 1 of 01 already, because 'x'"));
+    add_exclusion(log, {"01", std::nullopt, "z"});
+    CHECK(contains(refused({"01", 1, "y"}), "found trial 1 of 01 already, because 'x'"));
+    CHECK(contains(refused({"01", std::nullopt, "y"}), "found all trials of 01 already, because 'z'"));
+    take_part(log, protocol, "02", 1);
+    add_exclusion(log, {"02", std::nullopt, "z"});
+    CHECK(contains(refused({"02", 1, "y"}), "found all trials of 02 already, because 'z'"));
     const auto said = [&](const std::string& rows) {
         write_text_atomically(log / "exclusions.tsv", rows);
         return message_of([&] { read_study(log); });
@@ -131,7 +137,7 @@ TEST_CASE(
     CHECK(said(head + "sub-01\t1\tx\n").empty());
     CHECK(contains(said(head + "01\t2\tx\n"),
                    "trial: found 2 of '01', expected a trial that this participant has finished"));
-    CHECK(contains(said(head + "02\tall\tx\n"), "participant: found '02'"));
+    CHECK(contains(said(head + "09\tall\tx\n"), "participant: found '09'"));
     CHECK(contains(said(head + "01\tone\tx\n"), "line 2, trial"));
     CHECK(contains(said(head + "01\t1\tn/a\n"), "line 2, reason: found 'n/a'"));
     CHECK(contains(said(head + "01\t1\tx\n01\t1\ty\n"), "line 3, trial: found '1', expected each trial"));
@@ -202,6 +208,20 @@ TEST_CASE("replacements: who was to take a place and never came is replaced by a
     CHECK(contains(message_of([&] { read_replacements(log); }),
                    "line 5, participant: found '02', expected each participant "
                    "once: 22 has this place already"));
+}
+
+TEST_CASE("replacements: who takes a place but came with another order, as from a tablet, is named") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    for (const char* code : {"01", "02", "03"}) take_part(log, protocol, code, 2);
+    const auto noted = [&](const std::string& by) {
+        write_text_atomically(log / "replacements.tsv", "participant\treplaced_by\treason\n01\t" + by + "\tleft\n");
+        return read_study(log).notes;
+    };
+    REQUIRE(noted("02").size() == 1);
+    CHECK(contains(noted("02").front(), "02 has not the group and order of 01, whose place this is (number 2"));
+    CHECK(noted("03").empty());  // the same order again
 }
 
 TEST_CASE("replacements: a replaced participant with a trial that is left out counts as replaced") {

@@ -54,7 +54,8 @@ TEST_CASE("report: the paper's counts give its verdicts, and Holm's correction k
         const Json& paper = pair["replication"];
         significant += paper["significant"].get<bool>();
         corrected += paper["p_holm"].get<double>() < 0.05;
-        CHECK(paper["delta"].get<double>() >= 0.0);
+        CHECK(paper["newcombe_ci"][0].get<double>() <= paper["delta"].get<double>());  // the sign of both is of a - b
+        CHECK(paper["newcombe_ci"][1].get<double>() >= paper["delta"].get<double>());
         CHECK_FALSE(pair.contains("ignores_clustering"));  // the counts do not tell who was who
         CHECK(pair["p"].is_null());
         CHECK(pair["status"] == "cannot be computed, because the counts do not name their participants");
@@ -88,7 +89,7 @@ TEST_CASE("report: people who did both conditions are compared in pairs, over pa
     // ten people differ by one half, ten do not
     CHECK(pair.people.t == close_to(-0.25 / std::sqrt(20.0 * 0.0625 / 19.0 / 20.0)));
     CHECK(pair.people.p_permutation == close_to(2.0 / 1024.0));
-    CHECK(pair.replication->delta == close_to(0.25));
+    CHECK(pair.replication->delta == close_to(-0.25));
     CHECK(pair.mcnemar_p == close_to(2.0 / 1024.0));
     CHECK(pair.replication->p > pair.mcnemar_p);  // independent samples see less
     REQUIRE(pair.bootstrap);

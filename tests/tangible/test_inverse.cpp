@@ -163,6 +163,11 @@ TEST_CASE("inverse: out of reach ends at a limit, by name, and within the limits
     for (int tick = 0; tick < 100; ++tick)
         answer = inverse_step(other.model, other.state, {3e-3, 1.2 * std::min(1.0, tick / 50.0), {}}, {});
     CHECK(answer.limited_by == 0);
+    CHECK_FALSE(answer.rate_limited);
+    ReadyDevice sudden = ready("strip.json", 100.0);
+    const InverseAnswer first = inverse_step(sudden.model, sudden.state, {3e-3, 0.0, {}}, {});
+    CHECK(first.rate_limited);  // on its way is not out of reach
+    CHECK(first.limited_by == -1);
     CHECK(answer.actuation[0] == close_to(5.5));
     const Actuation before = other.state.actuation;
     answer = inverse_step(other.model, other.state, {std::nan(""), 0.1, {}}, {});

@@ -318,11 +318,12 @@ test('without a desk: the protocol was kept, two people and a single run are exp
     assert.deepEqual([counted.participants, counted.trials, counted.practice_trials, counted.interrupted_trials], [2, 2, 0, 0]);
 }));
 
-test('a full storage without a desk: the study waits and says so; exporting lets it go on', options, () => withDesk(async (browser, desk) => {
+// The first of two trials, which the storage does not take.
+const trialWithoutRoom = async (browser, desk, offline) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=twice&participant=5');
     await begin(page);
-    await page.context().setOffline(true); // else the trial goes to the desk, and the study on
+    await page.context().setOffline(offline);
     await page.evaluate(() => {
         window.ways = ['put', 'add'].map((way) => [way, IDBObjectStore.prototype[way]]);
         for (const [way] of ways) IDBObjectStore.prototype[way] = () => { throw new DOMException('full', 'QuotaExceededError'); };
@@ -330,6 +331,26 @@ test('a full storage without a desk: the study waits and says so; exporting lets
     await stroke(browser, 700, 400);
     await key(page, 'f');
     await page.waitForTimeout(800);
+};
+
+test('a full storage: after a reload the study does not ask again for a trial that the desk has', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await trialWithoutRoom(browser, desk, false);
+    await key(page, 'Enter');
+    await at(page, 'trial'); // the desk has the first
+    assert.equal((await stored(page)).some(({finished}) => finished), false);
+    await reload(page);
+    await at(page, 'again');
+    assert.equal((await report(page)).study.finished, 1);
+    assert.equal(await page.evaluate(() => localStorage.getItem('palpa-study')), null); // there was room again
+    await reload(page);
+    await at(page, 'again');
+    assert.equal((await report(page)).study.finished, 1);
+}, {protocols: {twice: {...tiny, repeats: 2}}}));
+
+test('a full storage without a desk: the study waits and says so; exporting lets it go on', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await trialWithoutRoom(browser, desk, true); // else the trial goes to the desk, and the study on
     await key(page, 'Enter');
     await key(page, 'Enter'); // no way on
     await key(page, 'Escape'); // takes neither the reason away nor the way on

@@ -205,9 +205,23 @@ TEST_CASE("study screen: digits answer the scales one after the other, and Enter
     tap(desk.window, SDLK_RETURN);  // of somebody quick, for whom the digit was an answer
     live_frames(desk, 4);
     CHECK(std::holds_alternative<step::Questions>(run.step));
+    CHECK(desk.app.view.study.told_too_early);
     for (const int key : {SDLK_8, SDLK_5, SDLK_0, SDLK_3}) {
         tap(desk.window, key);
         live_frames(desk, 4);
     }
     CHECK(desk.app.view.study.answers == std::vector<std::string>{"5", "", "0"});
+    CHECK_FALSE(desk.app.view.study.told_too_early);
+    // nobody has to answer: after a digit that came too early, a second Enter goes on
+    desk.app.view.study.answers = {"", "", ""};
+    run.step_began_s = desk.window.now_s();
+    tap(desk.window, SDLK_2);
+    live_frames(desk, 4);
+    run.step_began_s = desk.window.now_s() - 5.0;
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 4);
+    CHECK(std::holds_alternative<step::Questions>(run.step));
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 4);
+    CHECK_FALSE(std::holds_alternative<step::Questions>(run.step));
 }
