@@ -152,8 +152,14 @@ const palpaTrials = (() => {
         const entries = Object.entries(files).map(([path, text]) => ({path, text}));
         if (entries.length === 0) return;
         studyFiles = [...studyFiles.filter(({path}) => !(path in files)), ...entries];
+        const isDone = ({path, name}) => `${path.slice(0, path.lastIndexOf('/'))}/${name}_events.tsv` in files;
+        const done = new Set(parts.filter(isDone).map(({name}) => name)); // not broken off
+        parts = parts.filter((part) => !isDone(part));
         carried = files;
-        await request('readwrite', (store) => { for (const file of entries) store.put(file); }, ['study']).then(() => { carried = {}; }).catch(() => {});
+        await request('readwrite', (store, partsStore) => {
+            for (const file of entries) store.put(file);
+            for (const name of done) partsStore.delete(IDBKeyRange.bound([name], [name, []]));
+        }, ['study', 'parts']).then(() => { carried = {}; }).catch(() => {});
         carry();
     };
 
@@ -189,9 +195,9 @@ const palpaTrials = (() => {
             database.onclose = () => { database = null; tell(palpaWords.storageClosed); };
             for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
             studyFiles = await request('readonly', (store) => store.getAll(), ['study']);
-            await takeCarried();
             designs = await request('readonly', (store) => store.getAll(), ['designs']);
             parts = await request('readonly', (store) => store.getAll(), ['parts']);
+            await takeCarried();
             for (const part of parts) restoring.add(part.name);
             findMissing();
             noteNames();
