@@ -1,7 +1,6 @@
 #include "study/sample_log.h"
 
 #include <cstdio>
-#include <set>
 #include <stdexcept>
 
 #include "files/input_error.h"
@@ -68,17 +67,14 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
     std::filesystem::create_directories(files.folder, error);
     if (error) throw std::runtime_error(files.folder.string() + ": cannot be created: " + error.message());
     prepare_dataset(directory);
-    const std::string runs = subject + "_task-" + std::string(task) + "_run-";
-    std::set<std::string> taken;  // numbers with any file, such as that of a device that was stopped before the trial began
-    for (const auto& entry : std::filesystem::directory_iterator(files.folder)) {
-        const std::string name = entry.path().filename().string();
-        if (name.starts_with(runs)) taken.insert(name.substr(runs.size(), name.find('_', runs.size()) - runs.size()));
-    }
     for (int run = first;; ++run) {
         char number[16];
         std::snprintf(number, sizeof number, "%02d", run);
-        files.stem = runs + number;
-        if (taken.count(number) == 0) return files;
+        files.stem = subject + "_task-" + std::string(task) + "_run-" + number;
+        const bool taken = std::filesystem::exists(files.file("_samples.tsv")) ||
+                           std::filesystem::exists(files.file("_settings.json")) ||
+                           std::filesystem::exists(files.file("_events.tsv"));
+        if (!taken) return files;
     }
 }
 

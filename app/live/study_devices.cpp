@@ -1,5 +1,7 @@
 // The devices of a study's trial, arm and pins or a soft device: it begins once they run, and its settings name them.
 
+#include <filesystem>
+
 #include "app/live/live_app.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
@@ -12,6 +14,17 @@ void add_line(const std::string& line, std::string& text) { text += (text.empty(
 // Why these devices do not run though they are there; "" if they could.
 std::string why_stopped(const DriveState& shown, const char* fault) {
     return shown.problem.empty() ? words::filled(words::kDevicesStopped, {fault}) : shown.problem;
+}
+
+// The run of the trial that is due. Devices that were stopped before their trial began have left a file of rows: its number
+// is passed over, so that a trial's rows and events have one number.
+study::RunFiles run_with_devices(StudyRun& run) {
+    for (;; ++run.first_run) {
+        const session::SessionFiles files = due_files(run);
+        study::RunFiles next = study::next_run(files.log, files.participant, files.task, files.first_run);
+        const auto is_there = [&](const char* rows) { return std::filesystem::exists(next.file(rows)); };
+        if (!is_there("_tactile.tsv") && !is_there("_tangible.tsv")) return next;
+    }
 }
 
 }  // namespace
@@ -53,8 +66,7 @@ bool study_devices_ready(App& app) {
     if (!opening) {
         know_devices(app);
         if (!app.tactile.shown && !app.tangible.shown) return true;
-        const session::SessionFiles files = due_files(run);
-        const study::RunFiles next = study::next_run(files.log, files.participant, files.task, files.first_run);
+        const study::RunFiles next = run_with_devices(run);
         drive_tactile(next.file("_tactile.tsv"), app);
         drive_tangible(next.file("_tangible.tsv"), app);
         opening = true;

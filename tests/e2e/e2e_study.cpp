@@ -135,7 +135,7 @@ void try_constant_pen(bool taps) {
     // it always sends the same, in touches that are too short for a verdict, or for so long that there is one
     for (int tap = 0; taps && tap < 4; ++tap) script.press_at(600, 400, 0.5, 0.0, 0.03);
     if (taps) script.key(kF);
-    if (!taps) script.press_at(600, 400, 0.5, 0.0, 0.7);
+    if (!taps) script.press_at(600, 400, 0.5, 0.0, 1.5);
     script.wait(now, "\"device\"");
     script.key(kEnter);                          // not now
     script.press_at(640, 500, 0.3, 0.002, 0.7);  // in the middle of the panel

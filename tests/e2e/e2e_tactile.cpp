@@ -103,6 +103,27 @@ TEST_CASE("ports: a trial whose devices' ports are not there does not begin, and
     CHECK_FALSE(std::filesystem::exists(folder / "log/sub-01/beh/sub-01_task-interval_run-01_settings.json"));
 }
 
+TEST_CASE("early: F12 while the devices get ready, and the trial begins anew with rows and events of one number") {
+    const TemporaryFolder folder;
+    prepared_scene(folder);
+    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
+    Script script(folder / "script.tsv");
+    script.t_s = 1.0;
+    script.key(kEnter);  // begin
+    script.t_s += 0.1;
+    script.key(kF12);
+    script.wait(stem + "1_tactile.tsv");  // by then the devices are there, which nobody wants any more
+    script.t_s += 0.5;
+    script.key(kEnter);  // Start
+    script.wait(stem + "2_events.tsv");
+    script.t_s += 1.0;
+    script.key(kF12);
+    script.out.close();
+    REQUIRE(run_study_to("device", folder, pins_study(folder) + " --simulate") == 0);
+    CHECK(std::filesystem::file_size(stem + "2_tactile.tsv") > 1000);
+    CHECK(read_text(stem + "2_events.tsv").find("device_gone") != std::string::npos);
+}
+
 TEST_CASE("driven: a study's surfaces are on arm and pins, and the settings name each device, real or simulated") {
     const TemporaryFolder folder;
     prepared_scene(folder);
