@@ -167,6 +167,9 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
     const std::string reason = reason_text(replacement.reason);
     const std::vector<Person> people = people_of_study(directory);
     const std::string among = " in " + (directory / "participants.tsv").string();
+    if (read_identity(directory)->kind.simulated)
+        throw files::bad_input(directory.string(), "", "a study of simulated participants",
+                               "one of people: who is simulated has one place in the plan");
     if (!is_among(people, replacement.participant))
         throw files::bad_input("--participant", "", files::shown(replacement.participant), "a participant" + among);
     if (!is_code(replacement.replaced_by))

@@ -52,6 +52,22 @@ std::string free_response_test(const Protocol& protocol) {
     return "people and cases random (Obuchowski and Rockette, jackknife)";
 }
 
+// Whom the primary comparison takes.
+std::string who_counts(const Protocol& protocol) {
+    if (!protocol.primary) return "all who finished a test";
+    const PrimaryComparison& one = *protocol.primary;
+    if (one.of_groups)
+        return "all in " + one.sides[0] + " and " + one.sides[1] + " who finished a test under " + one.condition;
+    const auto has = [&](const Group& group, const std::string& id) {
+        return std::any_of(group.conditions.begin(), group.conditions.end(),
+                           [&](std::size_t i) { return protocol.conditions[i].id == id; });
+    };
+    const bool same_people = std::any_of(protocol.groups.begin(), protocol.groups.end(), [&](const Group& group) {
+        return has(group, one.sides[0]) && has(group, one.sides[1]);
+    });
+    return same_people ? "all who finished a test of both sides" : "all who finished a test of one of the sides";
+}
+
 bool any_scene(const Protocol& protocol) {
     return std::any_of(protocol.conditions.begin(), protocol.conditions.end(),
                        [](const Condition& one) { return !one.scene.empty(); });
@@ -195,7 +211,7 @@ std::string analysis_part(const Protocol& protocol) {
             "method");
     return out +
            sheet_row("participants who count",
-                     "all who finished a test of both sides; dropouts replaced by `palpa study replace` are left out") +
+                     who_counts(protocol) + "; dropouts replaced by `palpa study replace` are left out") +
            sheet_row(
                "trials that do not count",
                "interrupted ones, which are repeated; finished ones only by `palpa study exclude`, with a reason, "

@@ -210,6 +210,20 @@ TEST_CASE("replacements: who was to take a place and never came is replaced by a
                    "once: 22 has this place already"));
 }
 
+TEST_CASE("replacements: simulated participants are not replaced, since each has one place in the plan") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    study_by_hand(folder / "other");
+    const Protocol protocol = read_protocol(folder / "p.json");
+    open_study(log, protocol, {true, 1, "palpa"});
+    add_people(log, {Person{"sim0001", "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+    CHECK(contains(message_of([&] {
+                       add_replacement(log, {"sim0001", "sim0002", "left"});
+                   }),
+                   "found a study of simulated participants"));
+    CHECK_FALSE(fs::exists(log / "replacements.tsv"));
+}
+
 TEST_CASE("replacements: who takes a place but came with another order, as from a tablet, is named") {
     const TemporaryFolder folder;
     const fs::path log = folder / "log";

@@ -43,6 +43,15 @@ TEST_CASE("preregistration: design, orders, primary test, stopping rule and hash
     CHECK_FALSE(contains(sheet, "NOT STATED"));
     CHECK_FALSE(contains(sheet, "| 8 | all"));
     CHECK(missing_statements(protocol).empty());
+    CHECK(contains(sheet, "| participants who count | all who finished a test of both sides;"));
+    Protocol grouped = protocol;
+    grouped.primary->of_groups = true;
+    grouped.primary->sides = {"I", "II"};
+    grouped.primary->condition = "a";
+    CHECK(contains(preregistration_sheet(grouped, {0, "palpa 1", {}}), "all in I and II who finished a test under a;"));
+    Protocol between = protocol;
+    between.groups = {{"I", {0}}, {"II", {1}}};
+    CHECK(contains(preregistration_sheet(between, {0, "palpa 1", {}}), "all who finished a test of one of the sides;"));
 }
 
 TEST_CASE("preregistration: what the protocol does not state is named first, with its key") {

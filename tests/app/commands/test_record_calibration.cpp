@@ -121,8 +121,9 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     // the cell was turned round since
     SimulatorProcess pulls(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "200", "--steps", "20", "--greatest-N", "2.6",
                                                        "--period-s", "4", "--counts-per-N", "-40000"});
-    const Called turned = shell(kPen + "--seconds 9 | " + kRecord + "-o " + session + " --sensor serial:" +
-                                pulls.port() + " --N-per-count 2.5e-5 --levels - --steady-s 0.1 --resume --json");
+    const Called turned =
+        shell(kPen + "--seconds 9 | " + kRecord + "-o " + session + " --sensor serial:" + pulls.port() +
+              " --N-per-count 2.5e-5 --levels - --steady-s 0.1 --resume --json");
     CAPTURE(turned.err);
     CHECK(contains(turned.err, "warning: the force was below zero in a press: reverse the sign of --N-per-count"));
     CHECK(read_text(session + "/points.csv") == after);
