@@ -48,7 +48,7 @@ class TactileThread {
     std::int64_t lost_steps() const { return lost_; }
     DeviceReport report() const {
         DeviceReport report = loop_->report;
-        report.late_periods = late_;
+        report.late_periods = late_so_far();
         return report;
     }
 
@@ -76,10 +76,7 @@ class TactileThread {
         } else {
             PenContact contact;
             const bool touched = loop_->pen.take(contact);
-            const auto due = static_cast<double>(done_ + loop_->report.missed_periods);
-            late_ += elapsed_s - tactile::kStep_s * due > 1e-3;
             sends = step(elapsed_s, touched ? &contact : nullptr);
-            ++done_;
         }
         if (sends) port_.send(now_s, record_.command);
         if (!press_.empty() && elapsed_s >= tactile::kStep_s * static_cast<double>(steps_)) ending_ = true;
@@ -95,12 +92,16 @@ class TactileThread {
         record_.round_trip_s = arm.round_trip_s;
         record_.arm_age_s = arm.age_s;
         record_.lost = port_.link() != nullptr ? port_.link()->feedback.lost : 0;
+        record_.late = late_so_far();
         record_.fault = port_.fault();
         record_.fault_words = fault_words(record_.fault, silent_now(arm));
         record_.step_ns = static_cast<double>(files::steady_ns() - before_ns);
         if (sends && !ring_->push(record_)) ++lost_;
         return sends;
     }
+
+    // Of several steps that one period catches up on, each counts.
+    std::int64_t late_so_far() const noexcept { return on_grid_ ? late_ : loop_->report.late_periods; }
 
     Silent silent_now(const devices::ArmFeedback& arm) const noexcept {
         Silent silent;
@@ -294,6 +295,7 @@ bool TactileLive::latest(TactileMoment& out) {
     works.moment.mismatch_s = tactile::lag_s(works.sink->result.mismatch);
     works.moment.steps = figures.steps;
     works.moment.held_steps = figures.held_steps;
+    works.moment.late_steps = record.late;
     works.moment.step_p50_s = 1e-9 * works.sink->step.quantile_ns(0.5);
     works.moment.step_p99_s = 1e-9 * works.sink->step.quantile_ns(0.99);
     works.moment.round_trip_p50_s = works.round_trip.quantile_s(0.5);

@@ -15,6 +15,7 @@ struct StepRecord {
     double round_trip_s = 0.0;
     double arm_age_s = 0.0;  // since the arm's last answer
     std::int64_t lost = 0;   // packets so far
+    std::int64_t late = 0;   // steps begun more than 1 ms late so far
     double step_ns = 0.0;    // how long it took; 0: not measured
     devices::Fault fault = devices::Fault::none;
     const char* fault_words = "";  // static; empty: text(fault)
