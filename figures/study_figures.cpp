@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <vector>
 
 #include "figures/gnuplot.h"
 #include "files/text.h"
@@ -20,7 +21,7 @@ if (kind eq "png") set terminal pngcairo size 1100,700 font "DejaVu Sans,14"
 if (kind eq "svg") set terminal svg size 1100,700 font "DejaVu Sans,16" background rgb "white"
 if (kind eq "pdf") set terminal pdfcairo size 11in,7in font "DejaVu Sans,16"
 set border 3
-set tics nomirror
+set tics nomirror noenhanced
 set style fill pattern 1 border lc rgb "#000000"
 set yrange [0:105]
 set ytics 20
@@ -35,13 +36,15 @@ set output "sensitivity." . kind
 set style fill solid 0.45 border lc rgb "#000000"
 set boxwidth 0.6
 set xrange [-0.5:rows - 0.5]
-plot "sensitivity.tsv" every ::0::(rows - 1) using 0:(percent("share")):xtic(1) with boxes lc rgb "#0072B2", \
+set xtics nomirror noenhanced ()
+do for [i = 1:rows] { set xtics add (every_condition[i] i - 1) }
+plot "sensitivity.tsv" every ::0::(rows - 1) using 0:(percent("share")) with boxes lc rgb "#0072B2", \
      "" every ::0::(rows - 1) using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
 
 set ylabel "Positive predictive value (%)"
 set title "Positive predictive value by condition, with Wilson intervals at " . level . ", which ignore clustering" . subtitle
 set output "ppv." . kind
-plot "ppv.tsv" every ::0::(rows - 1) using 0:(percent("share")):xtic(1) with boxes lc rgb "#009E73", \
+plot "ppv.tsv" every ::0::(rows - 1) using 0:(percent("share")) with boxes lc rgb "#009E73", \
      "" every ::0::(rows - 1) using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
 )gp";
 
@@ -51,45 +54,61 @@ constexpr const char* kNodules =
 set ylabel "Sensitivity (%)"
 set title "Sensitivity by nodule, with Wilson intervals at " . level . ", which ignore clustering" . subtitle
 set output "nodules." . kind
-set key outside right top title "nodule"
+set key outside right top title "nodule" noenhanced
 set style fill pattern border lc rgb "#000000"
-set xrange [-0.5:words(conditions) - 0.5]
-set boxwidth 0.8 / words(nodules)
-word_at(list, name) = sum [i = 1:words(list)] (word(list, i) eq name ? i : 0)
-place(condition, nodule) = word_at(conditions, condition) - 1 + 0.8 * (word_at(nodules, nodule) - 0.5 * (words(nodules) + 1)) / words(nodules)
-mine(i) = strcol("nodule") eq word(nodules, i) ? place(strcol("condition"), strcol("nodule")) : NaN
+set xrange [-0.5:|conditions| - 0.5]
+set boxwidth 0.8 / |nodules|
+place(row) = condition_of[row] - 1 + 0.8 * (nodule_of[row] - 0.5 * (|nodules| + 1)) / |nodules|
+mine(i, row) = nodule_of[row] == i ? place(row) : NaN
 colours = "#0072B2 #E69F00 #009E73 #CC79A7 #D55E00 #56B4E9"
 colour(i) = word(colours, (i - 1) % words(colours) + 1)
-unset xtics
-set xtics nomirror
-do for [i = 1:words(conditions)] { set xtics add (word(conditions, i) i - 1) }
-plot for [i = 1:words(nodules)] "nodules.tsv" every ::0::(nodule_rows - 1) using (mine(i)):(percent("share")) with boxes fs pattern i + 2 lc rgb colour(i) title word(nodules, i), \
-     "" every ::0::(nodule_rows - 1) using (place(strcol("condition"), strcol("nodule"))):(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5 notitle
+set xtics nomirror noenhanced ()
+do for [i = 1:|conditions|] { set xtics add (conditions[i] i - 1) }
+plot for [i = 1:|nodules|] "nodules.tsv" every ::0::(nodule_rows - 1) using (mine(i, int($0) + 1)):(percent("share")) with boxes fs pattern i + 2 lc rgb colour(i) title nodules[i] noenhanced, \
+     "" every ::0::(nodule_rows - 1) using (place(int($0) + 1)):(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5 notitle
 )gp";
 
-// gnuplot's word() takes several words as one if they are in quotes.
-void add_word(const std::string& word, std::string& list) {
-    std::string plain;
-    for (const char c : word) plain += c == '"' || c == '\'' || c == '\\' || c == '`' ? '_' : c;
-    const std::string entry = "'" + plain + "'";
-    if (list.find(entry) == std::string::npos) list += (list.empty() ? "" : " ") + entry;
+// Returns the place of a name among `names`, from 1.
+std::size_t place_of(const std::string& name, std::vector<std::string>& names) {
+    const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+    if (at == static_cast<std::ptrdiff_t>(names.size())) names.push_back(name);
+    return static_cast<std::size_t>(at) + 1;
+}
+
+std::string array_of(const std::string& name, const std::vector<std::string>& entries) {
+    std::string list;
+    for (const std::string& entry : entries) list += (list.empty() ? "" : ", ") + entry;
+    return "array " + name + "[" + std::to_string(entries.size()) + "] = [" + list + "]\n";
+}
+
+// gnuplot takes labels of tics for formats of numbers.
+std::string tic_label(const std::string& text) {
+    std::string out;
+    for (const char c : single_quoted(text)) out += c == '%' ? std::string("%%") : std::string(1, c);
+    return out;
 }
 
 std::string script_of(const study::Report& report) {
-    std::string conditions, nodules, out;
-    std::size_t nodule_rows = 0;
+    // rows of tables are known by their number, since gnuplot reads names with a backslash as others
+    std::vector<std::string> every, conditions, labels, nodules, titles, condition_of, nodule_of;
     for (const study::ConditionResult& condition : report.conditions) {
-        nodule_rows += condition.nodules.size();
-        if (!condition.nodules.empty()) add_word(condition.name, conditions);
-        for (const study::NoduleResult& nodule : condition.nodules) add_word(nodule.nodule, nodules);
+        every.push_back(tic_label(condition.name));
+        for (const study::NoduleResult& nodule : condition.nodules) {
+            condition_of.push_back(std::to_string(place_of(condition.name, conditions)));
+            nodule_of.push_back(std::to_string(place_of(nodule.nodule, nodules)));
+        }
     }
+    for (const std::string& name : conditions) labels.push_back(tic_label(name));
+    for (const std::string& name : nodules) titles.push_back(single_quoted(name));
     // below these rows stand those of the groups
-    out +=
-        "rows = " + std::to_string(report.conditions.size()) + "\nnodule_rows = " + std::to_string(nodule_rows) + "\n";
+    std::string out =
+        "rows = " + std::to_string(every.size()) + "\nnodule_rows = " + std::to_string(nodule_of.size()) + "\n";
     out += "level = \"" + files::short_number(100.0 * report.options.bootstrap.level) + " %\"\n";
     out += "subtitle = " + std::string(report.simulated ? R"("\n{/*0.8 SIMULATED participants}")" : "''") + "\n";
-    out += kScript;
-    if (!nodules.empty()) out += "\nconditions = \"" + conditions + "\"\nnodules = \"" + nodules + "\"" + kNodules;
+    out += array_of("every_condition", every) + kScript;
+    if (!nodules.empty())
+        out += "\n" + array_of("conditions", labels) + array_of("nodules", titles) +
+               array_of("condition_of", condition_of) + array_of("nodule_of", nodule_of) + kNodules;
     return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "files/input_error.h"
 
@@ -156,7 +157,13 @@ devices::ActuatorRig tangible_rig(const tangible::DeviceModel& model, const std:
         throw files::bad_input(device.file, "wires", "none",
                                "the ports and drives of the device, or a plant in its place");
     devices::ActuatorRig rig = *device.wires;
-    for (const std::string& port : ports) devices::set_port(port, rig);
+    std::set<std::string> names;
+    for (const std::string& port : ports) {
+        devices::set_port(port, rig);
+        const std::string name = port.substr(0, port.find('='));
+        if (!names.insert(name).second)
+            throw files::bad_input("--port", "", files::shown(name) + " twice", "each port once");
+    }
     return rig;
 }
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "devices/limits.h"
+#include "files/input_error.h"
 #include "files/text.h"
 #include "scene/plan.h"
 #include "session/tangible_body.h"
@@ -76,6 +77,13 @@ TEST_CASE("tangible run: the devices are the soft device, its lines and its sens
         }
         CHECK(roles == "soft device motors sensor ");
     }
+}
+
+TEST_CASE("tangible run: a port that is named twice is refused") {
+    const SmallRun run;
+    CHECK(tangible_rig(*run.plan->model, {"motors=/dev/pts/7"}).ports.front().path == "/dev/pts/7");
+    CHECK_THROWS_WITH_AS(tangible_rig(*run.plan->model, {"motors=/dev/pts/7", "motors=/dev/pts/8"}),
+                         doctest::Contains("--port: found 'motors' twice, expected each port once"), files::InputError);
 }
 
 TEST_CASE("tangible live: a stop of the guard is named by its reason") {

@@ -64,6 +64,26 @@ TEST_CASE("command study analyse and power: a file of one's own is not replaced,
     for (int i = 0; i < 2; ++i) CHECK(study("analyse " + kCounts + to_folder).status == 0);
 }
 
+TEST_CASE("command study analyse: figures name conditions and nodules as the tables do, whatever stands in the names") {
+    if (!has_gnuplot()) return;
+    const TemporaryFolder folder;
+    std::string rows = "condition\ttp\tfn\tfp\tnodule\n";
+    for (const std::string condition : {"it's 10% gel", "a_b", "{q} \\n^2"})
+        rows += condition + "\t5\t5\t1\tA\n" + condition + "\t2\t8\t0\tA'\n";
+    write_text_atomically(folder / "odd.tsv", rows);
+    const Called called = study("analyse " + (folder / "odd.tsv").string() + " -o " + (folder / "report").string());
+    CAPTURE(called.err);
+    CHECK(called.status == 0);
+    for (const char* name : {"nodules.svg", "sensitivity.svg", "ppv.svg"}) {
+        const std::string figure = read_text(folder / "report" / name);
+        CAPTURE(name);
+        CHECK(contains(figure, "10% gel"));
+        CHECK(contains(figure, ">a_b<"));
+        CHECK(contains(figure, "{q} \\n^2"));
+    }
+    CHECK(contains(read_text(folder / "report/figures.gp"), "nodule_of[6] = [1, 2, 1, 2, 1, 2]"));
+}
+
 TEST_CASE("command study analyse: a table of rated marks gives figures of merit, the mixed model and its data") {
     const TemporaryFolder folder;
     std::string rows = "condition\tparticipant\tcase\tkind\tlesion\trating\n";
