@@ -6,6 +6,7 @@
 
 #include "figures/gnuplot.h"
 #include "files/text.h"
+#include "study/observations.h"
 
 namespace palpa::figures {
 namespace {
@@ -68,13 +69,6 @@ plot for [i = 1:|nodules|] "nodules.tsv" every ::0::(nodule_rows - 1) using (min
      "" every ::0::(nodule_rows - 1) using (place(int($0) + 1)):(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5 notitle
 )gp";
 
-// Returns the place of a name among `names`, from 1.
-std::size_t place_of(const std::string& name, std::vector<std::string>& names) {
-    const auto at = std::find(names.begin(), names.end(), name) - names.begin();
-    if (at == static_cast<std::ptrdiff_t>(names.size())) names.push_back(name);
-    return static_cast<std::size_t>(at) + 1;
-}
-
 std::string array_of(const std::string& name, const std::vector<std::string>& entries) {
     std::string list;
     for (const std::string& entry : entries) list += (list.empty() ? "" : ", ") + entry;
@@ -94,8 +88,8 @@ std::string script_of(const study::Report& report) {
     for (const study::ConditionResult& condition : report.conditions) {
         every.push_back(tic_label(condition.name));
         for (const study::NoduleResult& nodule : condition.nodules) {
-            condition_of.push_back(std::to_string(place_of(condition.name, conditions)));
-            nodule_of.push_back(std::to_string(place_of(nodule.nodule, nodules)));
+            condition_of.push_back(std::to_string(1 + study::index_of(condition.name, conditions)));
+            nodule_of.push_back(std::to_string(1 + study::index_of(nodule.nodule, nodules)));
         }
     }
     for (const std::string& name : conditions) labels.push_back(tic_label(name));

@@ -167,9 +167,6 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
     const std::string reason = reason_text(replacement.reason);
     const std::vector<Person> people = people_of_study(directory);
     const std::string among = " in " + (directory / "participants.tsv").string();
-    if (read_identity(directory)->kind.simulated)
-        throw files::bad_input(directory.string(), "", "a study of simulated participants",
-                               "one of people: who is simulated has one place in the plan");
     if (!is_among(people, replacement.participant))
         throw files::bad_input("--participant", "", files::shown(replacement.participant), "a participant" + among);
     if (!is_code(replacement.replaced_by))
@@ -177,6 +174,11 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
     if (is_among(people, replacement.replaced_by))
         throw files::bad_input("--by", "", files::shown(replacement.replaced_by),
                                "a code that is not yet" + among + ": who has begun keeps the place in the plan");
+    // simulated participants are called sim0001, sim0002, ... (app/study/simulate.cpp)
+    if (read_identity(directory)->kind.simulated && replacement.replaced_by.starts_with("sim"))
+        throw files::bad_input(
+            "--by", "", files::shown(replacement.replaced_by),
+            "a code that does not begin with 'sim': each simulated participant has one place in the plan");
     std::string lines;
     for (const Replacement& other : read_replacements(directory)) {
         if (other.participant == replacement.participant && is_among(people, other.replaced_by))

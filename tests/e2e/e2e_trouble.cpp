@@ -44,9 +44,9 @@ std::string tap(double t_s, const char* x_px, const char* y_px) {
 TEST_CASE("scene broken: choosing it says what is wrong, and the present scene goes on") {
     const TemporaryFolder folder;
     copy_assets(folder);
-    const int status = run_with_copy(folder, "--quit-after-s 6", [&] {
+    const int status = run_with_copy(folder, "--quit-after-s 9", [&] {
         std::ofstream(folder / "assets/scenes/delay.json") << "{\"name\": \"broken\", \"tissue\": 3}";
-        play(folder, tap(0.0, "58", "27") + tap(0.6, "360", "178"));  // the menu, its third scene
+        play(folder, tap(0.5, "58", "27") + tap(3.0, "360", "178"));  // the menu, its third scene
     });
     CHECK(status == 0);
     const Json result = read_json(folder / "out.json");

@@ -210,7 +210,7 @@ TEST_CASE("replacements: who was to take a place and never came is replaced by a
                    "once: 22 has this place already"));
 }
 
-TEST_CASE("replacements: simulated participants are not replaced, since each has one place in the plan") {
+TEST_CASE("replacements: nobody who is simulated replaces another, since each has one place in the plan") {
     const TemporaryFolder folder;
     const fs::path log = folder / "log";
     study_by_hand(folder / "other");
@@ -220,8 +220,9 @@ TEST_CASE("replacements: simulated participants are not replaced, since each has
     CHECK(contains(message_of([&] {
                        add_replacement(log, {"sim0001", "sim0002", "left"});
                    }),
-                   "found a study of simulated participants"));
+                   "--by: found 'sim0002', expected a code that does not begin with 'sim'"));
     CHECK_FALSE(fs::exists(log / "replacements.tsv"));
+    add_replacement(log, {"sim0001", "x1", "left"});  // somebody who never comes
 }
 
 TEST_CASE("replacements: who takes a place but came with another order, as from a tablet, is named") {
