@@ -107,8 +107,7 @@ const char* verdict(const BoardHealth& board, bool wants_crc) {
     if (!board.answers) return "does not answer: power, wiring, baud rate, device number?";
     if (!board.timeout)
         return "NO TIMEOUT in one and a half times the device file's timeout_ms and two frames: its pins would stay up "
-               "longer, or for "
-               "ever, when Palpa is gone; set that timeout in the board";
+               "longer, or for ever, when Palpa is gone; set that timeout in the board";
     if (wants_crc && !board.crc) return "NO CRC: it would take garbled targets; switch CRC on in the board";
     return "safe";
 }

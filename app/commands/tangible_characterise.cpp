@@ -197,8 +197,7 @@ void print_press(const files::Json& press) {
     std::printf(
         "  %s: %s%.4g N/mm of %.4g, force off by %.3g %% rms (%.3g %% at worst), hysteresis %.3g N, "
         "saturated in %.3g %% of the ticks, as fast as the drives go in %.3g %%, relaxed, held or without equilibrium "
-        "in "
-        "%.3g %%\n",
+        "in %.3g %%\n",
         press["tissue"].get<std::string>().c_str(), found, press["rendered_N_per_mm"].get<double>(),
         press["wanted_N_per_mm"].get<double>(), press["force_rms_percent"].get<double>(),
         press["force_worst_percent"].get<double>(), press["hysteresis_N"].get<double>(),

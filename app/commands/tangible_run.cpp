@@ -126,8 +126,7 @@ void print_run(const files::Json& result) {
                     result["force_rms_percent"].get<double>());
     std::printf(
         "  saturated in %.3g %% of the ticks, as fast as the drives go in %.3g %%, last command held for %.3g ms, "
-        "relaxed "
-        "for %.3g ms\n",
+        "relaxed for %.3g ms\n",
         100.0 * result["saturated_share"].get<double>(), 100.0 * result["rate_limited_share"].get<double>(),
         result["held_ms"].get<double>(), result["relaxed_ms"].get<double>());
     for (const auto& fault : result["faults"])

@@ -251,7 +251,8 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     if (code.empty()) return run;
     if (!plain(code))
         throw files::bad_input("--participant", "", files::shown(code),
-                               study::reads_as_missing(code)
+                               study::names_a_sum(code) ? "a code that tables do not take for a row of sums"
+                               : study::reads_as_missing(code)
                                    ? "a code that tables in pandas and R do not take for a missing value"
                                    : "up to 20 letters and digits");
     enter_code(code, run);

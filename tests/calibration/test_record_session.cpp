@@ -134,6 +134,15 @@ TEST_CASE("record: it is enough when every band is known to 5 %, and until then 
     CHECK(repeats < 10);
     CHECK(target_band(options, session, now.band_error) == -1);
 
+    // where the curve is only extrapolated it is not known, however well the points agree
+    std::vector<double> heavier = staircase(20);
+    std::erase_if(heavier, [](double level) { return level < 0.06; });
+    RecordSession light;
+    t_s = 0.0;
+    for (int i = 0; i < 6; ++i) t_s = press(options, heavier, t_s, 1.0 + 0.01 * normal(random), random, light);
+    CHECK_FALSE(knowledge_of(options, light.points).done);
+    CHECK(contains(knowledge_of(options, light.points).missing, "not known to 5 %: 0 % to 5 % (no point)"));
+
     // repeats that differ by a third are never enough at once
     RecordSession wild;
     t_s = 0.0;

@@ -95,6 +95,7 @@ TEST_CASE("study run: a code that tables would take for a missing value is refus
     CHECK(contains(run.note, "missing value"));
     enter_code("all", run);
     CHECK(run.note == "Tables take this code for a row of sums. Enter another one.");
+    CHECK(contains(message_of([&] { open_study_run(protocol, folder / "log", "all"); }), "a row of sums"));
     CHECK(contains(message_of([&] { open_study_run(protocol, folder / "log", "NA"); }), "missing value"));
 }
 
