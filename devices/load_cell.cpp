@@ -1,5 +1,6 @@
 #include "devices/load_cell.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -71,6 +72,7 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
     if (!clock.started) {
         clock.started = true;
         clock.last_us = t_us;
+        clock.malformed = health.malformed;
         return true;
     }
     const auto step_us = static_cast<std::int32_t>(t_us - clock.last_us);  // across the wrap-around
@@ -87,6 +89,7 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
         }
         clock.total_us += 1;  // the board was reset and its clock restarted
         clock.last_us = t_us;
+        clock.malformed = health.malformed;
         return true;
     }
     clock.last_us = t_us;
@@ -96,8 +99,10 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
     if (clock.period_us == 0.0) clock.period_us = step_us;
     if (step_us < 1.5 * clock.period_us) clock.period_us += (step_us - clock.period_us) / 8.0;  // follows a slow drift
     if (step_us < 0.7 * clock.period_us) clock.period_us = step_us;
+    const std::int64_t garbled = health.malformed - clock.malformed;
+    clock.malformed = health.malformed;
     if (clock.steps > kLearn && step_us > 1.5 * clock.period_us)
-        health.lost += std::lround(step_us / clock.period_us) - 1;
+        health.lost += std::max<std::int64_t>(0, std::lround(step_us / clock.period_us) - 1 - garbled);
     return true;
 }
 

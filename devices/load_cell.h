@@ -34,8 +34,10 @@ struct LoadCellClock {
     std::int64_t total_us = 0;
     double period_us = 0.0;  // shortest usual step, learned from the stream
     std::int64_t steps = 0;
+    std::int64_t malformed = 0;  // lines that were garbled up to the last good one
 };
-// Returns false for a line that came twice or late. Counts losses once the period is known (after 16 steps).
+// Returns false for a line that came twice or late. Counts losses once the period is known (after 16 steps); what is missing
+// from the clock because its line was garbled is not lost as well.
 bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health);
 
 struct LoadCellOptions {

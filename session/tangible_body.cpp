@@ -79,6 +79,13 @@ bool is_told_length(const TangiblePlan& plan, std::size_t actuator) {
     return device.wires && device.wires->channels.at(actuator).drive == devices::Drive::length;
 }
 
+// The second opening would wait for the first, and say that another program has the port.
+void check_one_use(const std::string& where, const std::string& path, std::set<std::string>& paths) {
+    if (!paths.insert(path).second)
+        throw files::bad_input(where, "", files::shown(path) + " for two ports of the device",
+                               "a path of its own for each");
+}
+
 }  // namespace
 
 std::vector<int> surface_nodes(const TangiblePlan& plan) {
@@ -164,6 +171,11 @@ devices::ActuatorRig tangible_rig(const tangible::DeviceModel& model, const std:
         if (!names.insert(name).second)
             throw files::bad_input("--port", "", files::shown(name) + " twice", "each port once");
     }
+    const std::string where = ports.empty() ? device.file : "--port";
+    std::set<std::string> paths;
+    for (const devices::RigPort& port : rig.ports) check_one_use(where, port.path, paths);
+    for (const devices::RigSensor& sensor : rig.sensor)
+        if (sensor.place.host.empty()) check_one_use(where, sensor.place.path, paths);
     return rig;
 }
 

@@ -92,7 +92,7 @@ LongTable trials_long(const Observations& seen) {
                                 kConditionColumn,
                                 kWhichTrial,
                                 {"duration_s", "s", "from the begin of the trial to its end"},
-                                {"path_mm", "mm", "length of the path while pressing"},
+                                {"path_mm", "mm", "length of the path while pressing, in steps of 0.5 mm or more"},
                                 {"mean_force_N", "N", "while pressing"},
                                 {"max_force_N", "N", "while pressing"},
                                 {"found", "", "nodules found"},

@@ -30,7 +30,7 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("tp", r.true_positives, "", "nodules found");
     visit("fp", r.false_positives, "", "marks on no nodule");
     visit("fn", r.false_negatives, "", "nodules missed");
-    visit("path_mm", r.path_mm, "mm", "way of the pen while it presses");
+    visit("path_mm", r.path_mm, "mm", "way of the pen while it presses, in steps of 0.5 mm or more");
     visit("mean_force_N", r.mean_force_N, "N", "over the time that it presses");
     visit("max_force_N", r.max_force_N, "N", "greatest force");
     visit("x_mm", r.x_mm, "mm", "of a mark, map's frame");

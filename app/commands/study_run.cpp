@@ -52,7 +52,7 @@ void add_study_run(CLI::App& study) {
     command->add_option("--height-px", options->height_px, "height of the window (default: as last time, 800 at first)")
         ->check(CLI::Range(100, 16384));
     command->add_flag("--simulate", options->simulate_devices,
-                      "start simulators of the scene's arm and pins, and connect to them instead of real ones");
+                      "start simulators of the scenes' devices, and connect to them instead of real ones");
     command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
     command->add_flag("--json", options->json, "print one JSON object on standard output: how far the study went");
     command->callback([options] { run(*options); });

@@ -185,7 +185,8 @@ void print(const files::Json& state) {
     if (state.contains("replaced_by")) left += ", replaced by " + state["replaced_by"].get<std::string>();
     if (state.contains("excluded")) left += ", left out of the analysis";
     if (!state.contains("now")) {
-        std::printf("%s trials%s\n", state["finished"].dump().c_str(), left.c_str());
+        const int finished = state["finished"].get<int>();
+        std::printf("%d trial%s%s\n", finished, finished == 1 ? "" : "s", left.c_str());
         return;
     }
     const files::Json& now = state["now"];
@@ -206,7 +207,10 @@ void print(const files::Json& state) {
         std::printf("    ! nobody is at this step now: the study was closed, or went on with somebody else\n");
     }
     if (now.contains("stopped")) std::printf("    ! %s\n", now["stopped"].get<std::string>().c_str());
-    if (state.contains("events")) std::printf("    %s marks", state["events"]["marks"].dump().c_str());
+    if (state.contains("events")) {
+        const int marks = state["events"]["marks"].get<int>();
+        std::printf("    %d mark%s", marks, marks == 1 ? "" : "s");
+    }
     if (state.contains("sample")) {
         const files::Json& s = state["sample"];
         const auto text = [&](const char* name) { return short_text(s.value(name, "n/a")); };

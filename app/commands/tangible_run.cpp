@@ -118,9 +118,10 @@ session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, cons
 }
 
 void print_run(const files::Json& result) {
-    std::printf("%s on %s: %s ticks, %s missed\n", result["scene"].get<std::string>().c_str(),
-                result["device"].get<std::string>().c_str(), result["ticks"].dump().c_str(),
-                result["missed_ticks"].dump().c_str());
+    std::printf("%s on %s: %s ticks", result["scene"].get<std::string>().c_str(),
+                result["device"].get<std::string>().c_str(), result["ticks"].dump().c_str());
+    if (!result["missed_ticks"].is_null()) std::printf(", %s missed", result["missed_ticks"].dump().c_str());
+    std::printf("\n");
     if (!result["force_rms_percent"].is_null())
         std::printf("  rendered force off the wanted one by %.3g %% (rms, of the greatest wanted force)\n",
                     result["force_rms_percent"].get<double>());
@@ -246,12 +247,15 @@ void run_tangible(const TangibleRunArguments& arguments) {
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     if (!plant_name.empty() && arguments.press.empty()) note_less_depth(finger_of(arguments, {}, *plan), json);
     json["devices"] = files::Json::array();
-    if (arguments.replay.empty())
+    if (arguments.replay.empty()) {
         json["devices"] = devices_json(*plan, real, arguments.ports);
-    else
-        json["replay"] = arguments.replay;  // no device takes part
+        note_missed(plan->loop.rate_Hz, json);
+    } else {  // no device takes part; rows know neither what the drives were told nor which ticks were missed
+        json["replay"] = arguments.replay;
+        json["command"] = nullptr;
+        json["missed_ticks"] = nullptr;
+    }
     if (real) name_limits(result.guarded, json);
-    note_missed(plan->loop.rate_Hz, json);
     note_beyond(deepest_m, *plan, json);
     note_idle_hand(plant_name, by_force, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);

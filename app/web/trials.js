@@ -110,6 +110,9 @@ const palpaTrials = (() => {
         transaction.onerror = transaction.onabort = () => reject(transaction.error || new Error(palpaWords.interrupted));
     });
 
+    // Chromium gives no message with a full storage.
+    const whyNot = (error) => error.name === 'QuotaExceededError' ? palpaWords.storageFull : error.message;
+
     const open = () => new Promise((resolve, reject) => {
         const asked = indexedDB.open('palpa', 3);
         asked.onupgradeneeded = () => {
@@ -289,8 +292,7 @@ const palpaTrials = (() => {
             await save(trial, files, isNew);
         } catch (error) {
             unsaved.set(name, {trial, files, isNew});
-            const full = error && error.name === 'QuotaExceededError';
-            tellOf(name, palpaFilled(palpaWords.notStored, name, full ? palpaWords.storageFull : error.message));
+            tellOf(name, palpaFilled(palpaWords.notStored, name, whyNot(error)));
         } finally {
             --writing;
         }
@@ -302,7 +304,7 @@ const palpaTrials = (() => {
     const putPart = (name, path, offset, text) => {
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
         request('readwrite', (store) => { store.put({name, path, offset, text}); }, ['parts'], 'relaxed').catch((error) => {
-            if (!told.has('')) tellOf('', palpaFilled(palpaWords.partNotStored, error.message));
+            if (!told.has('')) tellOf('', palpaFilled(palpaWords.partNotStored, whyNot(error)));
         });
     };
 
@@ -418,7 +420,7 @@ const palpaTrials = (() => {
 
     const keepDesign = (path) => {
         request('readwrite', (store) => { store.put({path, text: contentOf(path)}); }, ['designs']).catch((error) => {
-            tell(palpaFilled(palpaWords.designNotStored, error.message));
+            tell(palpaFilled(palpaWords.designNotStored, whyNot(error)));
         });
     };
     const offer = (path) => download(path.slice(path.lastIndexOf('/') + 1), contentOf(path));

@@ -158,7 +158,7 @@ TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines"
     const TemporaryFolder folder;
     SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR,
                                {"--rate-Hz", "200", "--seconds", "3", "--first-us", "4293967295", "--lose", "0.03",
-                                "--duplicate", "0.03", "--reorder", "0.02", "--garble", "0.02", "--seed", "3"});
+                                "--duplicate", "0.03", "--reorder", "0.02", "--garble", "0.06", "--seed", "3"});
     LoadCellOptions options;
     options.path = simulator.port();
     options.N_per_count = 1.0 / 40000.0;
@@ -168,11 +168,10 @@ TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines"
     const SensorHealth health = reader.health();
     CAPTURE(sent.records);
     CHECK(sent.records >= 590);
-    CHECK(health.malformed > 3);
+    CHECK(health.malformed > 20);
     CHECK(health.duplicate > 5);
     CHECK(health.reordered > 2);
-    // a garbled line is a gap in the clock too
-    CHECK(std::abs(health.lost - sent.lost - health.malformed) <= 8);
+    CHECK(std::abs(health.lost - sent.lost) <= 8);  // a garbled line, a gap in the clock too, is not lost as well
     CHECK(health.received + sent.lost + sent.reordered + health.malformed >= sent.records - 8);
     for (std::size_t i = 1; i < all.size(); ++i) REQUIRE(all[i].t_device_s > all[i - 1].t_device_s);
     CHECK(all.back().t_device_s == close_to(3.0).epsilon(0.03));

@@ -79,11 +79,14 @@ TEST_CASE("tangible run: the devices are the soft device, its lines and its sens
     }
 }
 
-TEST_CASE("tangible run: a port that is named twice is refused") {
+TEST_CASE("tangible run: a port that is named twice, or a path for two ports, is refused") {
     const SmallRun run;
     CHECK(tangible_rig(*run.plan->model, {"motors=/dev/pts/7"}).ports.front().path == "/dev/pts/7");
     CHECK_THROWS_WITH_AS(tangible_rig(*run.plan->model, {"motors=/dev/pts/7", "motors=/dev/pts/8"}),
                          doctest::Contains("--port: found 'motors' twice, expected each port once"), files::InputError);
+    CHECK_THROWS_WITH_AS(tangible_rig(*run.plan->model, {"sensor=/dev/pts/7", "motors=/dev/pts/7"}),
+                         doctest::Contains("--port: found '/dev/pts/7' for two ports of the device"),
+                         files::InputError);
 }
 
 TEST_CASE("tangible live: a stop of the guard is named by its reason") {
