@@ -177,8 +177,11 @@ fs::path keep_trial(const KeptTrial& trial, const fs::path& folder) {
         if (fs::exists(file)) continue;
         files::AppendFile out(file);  // never replaces a file
         out.append(text);
-        if (!out.sync())
+        if (!out.sync()) {
+            std::error_code error;
+            fs::remove(file, error);  // half a result cannot be read
             throw std::runtime_error(file.string() + ": the result could not be written (is the disk full?)");
+        }
         return file;
     }
     throw std::runtime_error(folder.string() + ": no free name for the result of " + trial.utc);

@@ -244,9 +244,9 @@ void characterise(const TangibleCharacteriseArguments& arguments) {
     const auto model = std::make_shared<const tangible::DeviceModel>(
         make_device_model(tangible::read_soft_device(device_file(arguments.device))));
     check_depth("--depth-mm", "", 1e-3 * arguments.depth_mm, *model);
-    if (!arguments.folder.empty()) fs::create_directories(arguments.folder);
     const PlantOptions plant = plant_of(arguments, model->device.fit);
     const PressedTissues tissues = tissues_of(arguments);
+    if (!arguments.folder.empty()) fs::create_directories(arguments.folder);
     files::Json json{{"device", model->device.name},
                      {"plant", plant.name},
                      {"fidelity", arguments.fidelity},

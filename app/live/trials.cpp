@@ -150,6 +150,8 @@ void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, plat
 
 void begin_anew(platform::Window& window, const Gui& gui, App& app) {
     end_presses(window, app);
+    // what ended the last trial is not said of the new one
+    if (const auto* stopped = std::get_if<TrialStopped>(&app.course)) std::erase(app.notices.problems, stopped->why);
     close_or_tell(window, app);
     if (app.keeper != nullptr && !app.keeper->ready()) {
         app.course = WaitsForKeeper{};

@@ -61,7 +61,13 @@ void draw_marks(const Shown& shown, const session::Debrief& debrief, float mm, I
     place_labels(labels, mm, draw);
 }
 
-std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * share, 0) + " %" : "-"; }
+// A little is not nothing, and nearly all not all.
+std::string percent(double share) {
+    if (!std::isfinite(share)) return "-";
+    if (share > 0.0 && share < 0.005) return "< 1 %";
+    if (share < 1.0 && share > 0.995) return "> 99 %";
+    return fixed(100.0 * share, 0) + " %";
+}
 
 void gap_before_results(const Gui& gui) {
     ImGui::Dummy(ImVec2(0.0f, 0.5f * gui.mm()));

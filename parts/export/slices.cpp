@@ -103,14 +103,16 @@ std::string slice_png(const SliceGrid& grid, const Image& image, const std::arra
 }
 
 files::Json slices_json(const Part& part, const SliceGrid& grid, const SlicePitch& pitch) {
+    // nanometres: the conversion from metres leaves 199.99999999999997 of 200
+    const auto rounded = [](double length_um) { return std::round(1e3 * length_um) / 1e3; };
     files::Json json;
     json["part"] = part.name;
-    json["pitch_um"] = {1e6 * pitch.x_m, 1e6 * pitch.y_m, 1e6 * pitch.z_m};
+    json["pitch_um"] = {rounded(1e6 * pitch.x_m), rounded(1e6 * pitch.y_m), rounded(1e6 * pitch.z_m)};
     json["pixels"] = {grid.n[0], grid.n[1]};
     json["layers"] = grid.n[2];
     for (std::size_t c = 0; c < 3; ++c)
-        json["corner_mm"].push_back(1e3 *
-                                    (part.voxels.frame.origin_m[c] + part.voxels.frame.pitch_m * grid.box.low[c]));
+        json["corner_mm"].push_back(
+            rounded(1e6 * (part.voxels.frame.origin_m[c] + part.voxels.frame.pitch_m * grid.box.low[c])) / 1e3);
     return json;
 }
 

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -39,6 +40,12 @@ std::string tap(double t_s, const char* x_px, const char* y_px) {
     return row(t_s, "hover", "0") + row(t_s + 0.05, "down", "0.3") + row(t_s + 0.13, "up", "0");
 }
 
+std::string key(double t_s, int code) {
+    const std::string end = "\t0\t0\t0\n";
+    return std::to_string(t_s) + "\tkey\t" + std::to_string(code) + "\tdown" + end + std::to_string(t_s + 0.05) +
+           "\tkey\t" + std::to_string(code) + "\tup" + end;
+}
+
 }  // namespace
 
 TEST_CASE("scene broken: choosing it says what is wrong, and the present scene goes on") {
@@ -60,26 +67,41 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
     copy_assets(folder);
     std::filesystem::create_directory(folder / "small");
     const std::string small = (folder / "small").string();
-    if (shell("mount -t tmpfs -o size=96k tmpfs " + small + " 2>/dev/null") != 0) {
+    if (shell("mount -t tmpfs -o size=1096k tmpfs " + small + " 2>/dev/null") != 0) {
         MESSAGE("no right to mount a small disk here: not tested");
         return;
     }
+    std::ofstream(folder / "small/other") << std::string(1000 * 1024, 'x');
     std::string rows = "0\tpen\t0\thover\t760\t400\t0\n0.02\tpen\t0\tdown\t760\t400\t0.2\n";
     for (int i = 1; i < 2500; ++i) {
         rows += std::to_string(0.02 + 0.001 * i) + "\tpen\t0\tmove\t" + std::to_string(760 + 0.05 * i) + "\t400\t" +
                 std::to_string(0.5 + 0.1 * ((i / 50) % 2)) + "\n";
     }
     rows += "3\tkey\t41\tdown\t0\t0\t0\n3.05\tkey\t41\tup\t0\t0\t0\n";  // F: finish
-    const int status =
-        run_with_copy(folder, "--quit-after-s 7 --screenshot " + (folder / "p.png").string() + " --log " + small,
-                      [&] { play(folder, rows); });
-    const std::string samples = read_text(folder / "small/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv");
+    const std::string run = (folder / "small/sub-01/beh/sub-01_task-palpation_run-0").string();
+    bool scored = true;
+    const int status = run_with_copy(folder, "--quit-after-s 12 --log " + small, [&] {
+        std::thread somebody([&] {  // deletes other files once the disk is full
+            for (int i = 0; i < 200 && std::filesystem::space(small).available > 0; ++i) sleep_s(0.1);
+            sleep_s(2.0);
+            scored = std::filesystem::exists(folder / ".local/share/palpa/history");
+            std::filesystem::remove(folder / "small/other");
+            std::ofstream(folder / "freed") << "yes";
+        });
+        play(folder, rows + "3.1\twait\t" + (folder / "freed").string() + "\n" + key(3.2, 27) + tap(4.0, "760", "400") +
+                         key(5.0, 58) + key(6.0, 41));  // again, mark, finish
+        somebody.join();
+        sleep_s(2.0);
+    });
+    const std::string samples = read_text(run + "1_samples.tsv");
+    const Json second = read_json(run + "2_performance.json");
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
     CHECK(contains(read_text(folder / "err.txt"),
                    "cannot be written any more, so the trial ends here (is the disk full, or the folder gone?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
-    CHECK_FALSE(std::filesystem::exists(folder / ".local/share/palpa/history"));  // no score of half a trial
+    CHECK_FALSE(scored);                // no score of half a trial
+    CHECK(second["problems"].empty());  // what stopped the first trial is not said of the next
 }
 
 TEST_CASE("unplugged: a pen that goes in the middle of a press ends it, and another one is taken") {
@@ -110,11 +132,6 @@ TEST_CASE("gone: a log's folder that is removed is told, and the exit status say
     const TemporaryFolder folder;
     copy_assets(folder);
     const std::filesystem::path log = folder / "log";
-    const auto key = [](double t_s, int code) {
-        const std::string at = std::to_string(code) + "\tdown\t0\t0\t0\n";
-        return std::to_string(t_s) + "\tkey\t" + at + std::to_string(t_s + 0.05) + "\tkey\t" + std::to_string(code) +
-               "\tup\t0\t0\t0\n";
-    };
     const int status = run_with_copy(folder, "--quit-after-s 10 --practice --log " + log.string(), [&] {
         std::filesystem::remove_all(log);
         play(folder, tap(0.0, "760", "400") + key(0.5, 58) + key(1.5, 41) + key(3.0, 57));  // mark, finish, next

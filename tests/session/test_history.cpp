@@ -1,7 +1,9 @@
 // Results of trials that are kept: written, read back, never overwritten, deleted.
 
+#include <csignal>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <sys/resource.h>
 
 #include "app/scene_choices.h"
 #include "files/text.h"
@@ -49,6 +51,20 @@ KeptTrial finished() {
 }
 
 }  // namespace
+
+TEST_CASE("history: a result that does not fit on the disk leaves no file that cannot be read") {
+    const TemporaryFolder folder;
+    const KeptTrial trial = finished();
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{100, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    CHECK_THROWS_WITH(keep_trial(trial, folder / "history"), doctest::Contains("could not be written"));
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    CHECK(std::filesystem::is_empty(folder / "history"));
+}
 
 TEST_CASE("history: what is kept of a trial is what is read back") {
     const TemporaryFolder folder;
