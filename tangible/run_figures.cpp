@@ -34,6 +34,7 @@ files::Json figures_json(const TangiblePlan& plan, const TickFigures& ticks, con
     json["device"] = plan.model->device.name;
     json["fidelity"] = kFidelityNames[static_cast<std::size_t>(plan.loop.inverse.fidelity)];
     json["command"] = name_of(plan.loop.command);
+    json["rate_Hz"] = plan.loop.rate_Hz;
     json["ticks"] = ticks.ticks;
     json["missed_ticks"] = clock.missed_ticks;
     json["period_us"] = {{"p50", files::number_or_null(clock.period_p50_us)},

@@ -41,7 +41,7 @@ struct ClockFigures {
     double tick_p99_us = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Keys: device, fidelity, command, ticks, missed_ticks, period_us {p50, p99, worst}, tick_us {p50, p99}, force_rms_percent,
+// Keys: device, fidelity, command, rate_Hz, ticks, missed_ticks, period_us {p50, p99, worst}, tick_us {p50, p99}, force_rms_percent,
 // saturated_share, rate_limited_share, held_ms, relaxed_ms, faults [{fault, times}], notes.
 files::Json figures_json(const TangiblePlan& plan, const TickFigures& ticks, const ClockFigures& clock);
 

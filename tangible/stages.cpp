@@ -42,27 +42,28 @@ const char* error_of(Fidelity fidelity) {
     return "";
 }
 
-scene::StageText world_stage(const TangiblePlan& plan) {
+scene::StageText world_stage(const TangiblePlan& plan, double world_us) {
     std::string fidelity = "the tissue's force at the finger's depth";
     if (plan.world.depth_scale != 1.0) fidelity += " times " + short_number(plan.world.depth_scale);
     if (plan.world.force_N_per_N != 1.0) fidelity += ", times " + short_number(plan.world.force_N_per_N);
     fidelity += plan.place_follows ? "; where the pen touches" : "; at one place";
-    return {"world", "tick", fidelity, "that of the tissue's depth", 0.0};
+    return {"world", "tick", fidelity, "that of the tissue's depth", world_us};
 }
 
-scene::StageText inverse_stage(const TangiblePlan& plan, double tick_us) {
+scene::StageText inverse_stage(const TangiblePlan& plan, double inverse_us) {
     const Fidelity fidelity = plan.loop.inverse.fidelity;
     const std::string text = std::string(kFidelityNames[static_cast<std::size_t>(fidelity)]) + ": " +
                              steps_of(fidelity) + ", " + std::to_string(plan.model->equations()) +
                              " equations; commanded by " + std::string(name_of(plan.loop.command)) + ", " +
                              short_number(plan.loop.rate_Hz) + " Hz";
-    return {"inverse", "tick", text, error_of(fidelity), tick_us};
+    return {"inverse", "tick", text, error_of(fidelity), inverse_us};
 }
 
 }  // namespace
 
-std::vector<scene::StageText> stages_of(const TangiblePlan& plan, double tick_us) {
-    std::vector<scene::StageText> out{world_stage(plan), inverse_stage(plan, tick_us)};
+std::vector<scene::StageText> stages_of(const TangiblePlan& plan, const TickCost& cost) {
+    std::vector<scene::StageText> out{world_stage(plan, cost.world_us),
+                                      inverse_stage(plan, cost.tick_us - cost.world_us)};
     const DeviceFit& fit = plan.model->device.fit;
     if (plan.loop.compensate_friction && fit.friction_share > 0.0)
         out.push_back({"friction", "tick",
@@ -75,23 +76,30 @@ std::vector<scene::StageText> stages_of(const TangiblePlan& plan, double tick_us
     return out;
 }
 
-double median_tick_us(const TangiblePlan& plan) {
+TickCost tick_cost(const TangiblePlan& plan) {
     PressMotion motion;
     motion.depth_m = plan.greatest_m > 0.0 ? std::min(3e-3, 0.5 * plan.greatest_m) : 3e-3;
     TangibleState state = make_tangible_state(plan);
-    std::vector<double> us;
+    scene::TissueWork work = scene::make_work(*plan.world.tissue);
+    std::vector<double> tick_us, world_us;
     const int ticks = static_cast<int>(press_time_s(motion) * plan.loop.rate_Hz);
     for (int tick = 0; tick < ticks; ++tick) {
         TangibleInput in;
         in.time_s = tick / plan.loop.rate_Hz;
-        in.feedback.sensor_m = press_depth_m(motion, in.time_s) + plan.model->device.fit.zero_m;
+        const double depth_m = press_depth_m(motion, in.time_s);
+        in.feedback.sensor_m = depth_m + plan.model->device.fit.zero_m;
         in.feedback.sensor_s = in.time_s;
         in.feedback.has_sensor = 1.0;
         const std::int64_t began_ns = files::steady_ns();
         tangible_tick(plan, in, state);
-        us.push_back(1e-3 * static_cast<double>(files::steady_ns() - began_ns));
+        const std::int64_t between_ns = files::steady_ns();
+        world_force(plan.world, plan.place_m, depth_m, work);
+        tick_us.push_back(1e-3 * static_cast<double>(between_ns - began_ns));
+        world_us.push_back(1e-3 * static_cast<double>(files::steady_ns() - between_ns));
     }
-    return us.empty() ? 0.0 : files::quantile(us, 0.5, files::QuantileType::reached);
+    if (tick_us.empty()) return {};
+    constexpr auto kMedian = files::QuantileType::reached;
+    return {files::quantile(tick_us, 0.5, kMedian), files::quantile(world_us, 0.5, kMedian)};
 }
 
 }  // namespace palpa::tangible

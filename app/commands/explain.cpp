@@ -81,15 +81,15 @@ constexpr double kMostOfPeriod = 0.8;  // that a tick may take at the median: so
 void explain_soft_device(const scene::Scene& scene, const scene::Plan& plan, bool as_json, files::Json& json,
                          std::vector<std::string>& notes) {
     const tangible::TangiblePlan device = tangible::make_tangible_plan(scene, plan);
-    const double tick_us = tangible::median_tick_us(device);
-    const std::vector<scene::StageText> stages = tangible::stages_of(device, tick_us);
+    const tangible::TickCost cost = tangible::tick_cost(device);
+    const std::vector<scene::StageText> stages = tangible::stages_of(device, cost);
     const std::string& name = device.model->device.name;
     json["tangible"] = {{"device", name}, {"stages", device_stages_json(stages)}};
     if (!as_json) print_device_stages("soft device " + files::printable(name), stages);
     notes.insert(notes.end(), device.notes.begin(), device.notes.end());
     const double period_us = 1e6 / device.loop.rate_Hz;
-    if (tick_us > kMostOfPeriod * period_us)
-        notes.push_back("a tick takes " + files::short_number(1e-3 * tick_us) + " ms here, and the period is " +
+    if (cost.tick_us > kMostOfPeriod * period_us)
+        notes.push_back("a tick takes " + files::short_number(1e-3 * cost.tick_us) + " ms here, and the period is " +
                         files::short_number(1e-3 * period_us) +
                         " ms: live runs will miss ticks; the fidelity stale or linear takes less");
     json["notes"] = notes;

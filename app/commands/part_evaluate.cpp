@@ -78,7 +78,7 @@ void print_row(const parts::MethodResult& result) {
         std::printf(" %12s mm %12s N/m", files::short_number(1e3 * result.displacement_m).c_str(),
                     files::short_number(result.stiffness_N_per_m).c_str());
     }
-    if (result.error) std::printf("  %+.2f %% against %s", 100.0 * *result.error, result.against.c_str());
+    if (result.error) std::printf("  displacement %+.2f %% against %s", 100.0 * *result.error, result.against.c_str());
     if (result.method == Method::voxels && result.answered) {
         std::printf("  %lld cells, %d iterations, energy error %s %%", static_cast<long long>(result.cells),
                     result.iterations, files::short_number(100.0 * result.energy_error).c_str());

@@ -31,6 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr files::Bounds kRates_Hz{10.0, 2000.0};
+
 struct TangibleRunArguments {
     std::string scene;
     std::string plant;
@@ -40,7 +42,7 @@ struct TangibleRunArguments {
     std::string log;
     std::string fidelity;  // empty: the scene's
     std::string command;
-    double rate_Hz = 100.0;
+    double rate_Hz = 0.0;  // 0: 100, or that of the run that is replayed
     double seconds = 0.0;
     std::uint64_t seed = 1;
     bool headless = false;
@@ -49,7 +51,7 @@ struct TangibleRunArguments {
 
 tangible::LoopOptions loop_options_of(const TangibleRunArguments& arguments, const scene::TangibleOptions& scene) {
     tangible::LoopOptions options = tangible::loop_options(scene);
-    options.rate_Hz = arguments.rate_Hz;
+    if (arguments.rate_Hz > 0.0) options.rate_Hz = arguments.rate_Hz;
     if (!arguments.fidelity.empty()) options.inverse.fidelity = tangible::fidelity_named(arguments.fidelity);
     if (!arguments.command.empty()) options.command = tangible::command_named(arguments.command);
     return options;
@@ -67,6 +69,25 @@ void check_replay(const TangibleRunArguments& arguments) {
                                     ": found beside --replay, expected one of the two: recorded rows are run as they "
                                     "are");
     }
+}
+
+// The rows are only the input. What the run was told beside them, and that gives the same commands, stands in the report
+// beside the rows; a run that was killed has none.
+void take_recorded_options(TangibleRunArguments& arguments) {
+    if (arguments.replay.empty()) return;
+    const fs::path report = fs::path(arguments.replay).parent_path() / "performance.json";
+    std::error_code error;
+    if (!fs::exists(report, error)) return;
+    const files::Json root = files::read_json(report);
+    files::JsonReader json(root, report.string());
+    const std::string fidelity(
+        tangible::kFidelityNames.at(json.choice("fidelity", {"step", "converged", "stale", "linear"})));
+    const double rate_Hz = json.number("rate_Hz", kRates_Hz);
+    if (arguments.fidelity.empty()) arguments.fidelity = fidelity;
+    if (arguments.rate_Hz == 0.0) arguments.rate_Hz = rate_Hz;
+    if (arguments.fidelity != fidelity || arguments.rate_Hz != rate_Hz)
+        std::fprintf(stderr, "palpa: warning: the run had --fidelity %s --rate-Hz %s; the commands are others\n",
+                     fidelity.c_str(), files::short_number(rate_Hz).c_str());
 }
 
 std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& scene) {
@@ -219,7 +240,7 @@ void note_idle_hand(const std::string& plant_name, bool by_force, files::Json& j
         " has no effect: the finger follows a motion here; --press with force_N lets the hand push");
 }
 
-void run_tangible(const TangibleRunArguments& arguments) {
+void run_tangible(TangibleRunArguments arguments) {
     const scene::Scene scene = load_scene(arguments.scene);
     if (!scene.tangible) throw files::bad_input(arguments.scene, "tangible", "no such key", "one that names a device");
     if (!arguments.log.empty()) {
@@ -227,6 +248,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
         for (const char* file : {"ticks.tsv", "performance.json"}) files::check_new(fs::path(arguments.log) / file);
     }
     check_replay(arguments);
+    take_recorded_options(arguments);
     const std::string plant_name = plant_of(arguments, scene);
     const bool real = plant_name.empty() && arguments.replay.empty();
     std::vector<devices::PressRow> press;  // read before the tissue is prepared, which takes seconds
@@ -300,7 +322,8 @@ void add_loop_options(CLI::App& command, bool of_scene, std::string& fidelity, s
     command
         .add_option("--command", kind, "what the drives are told: forces, or the cables' lengths (" + scenes + "force)")
         ->check(one_of({"force", "position"}));
-    command.add_option("--rate-Hz", rate_Hz, "ticks of the loop (default 100)")->check(CLI::Range(10.0, 2000.0));
+    command.add_option("--rate-Hz", rate_Hz, "ticks of the loop (default 100)")
+        ->check(CLI::Range(kRates_Hz.lowest, kRates_Hz.highest));
 }
 
 void add_tangible_run(CLI::App& tangible) {

@@ -77,7 +77,7 @@ void drag_card(const PanelArea& area, ScaleForm& form) {
     const float middle_x = 0.5f * (area.x0 + area.x1);
     ImGui::SetCursorScreenPos(ImVec2(std::max(area.x0, middle_x - kGrip * half_px), area.y0));
     const float width_px = std::min(area.width(), 2.0f * kGrip * half_px);
-    ImGui::InvisibleButton("card", ImVec2(std::max(1.0f, width_px), std::max(1.0f, area.height())));
+    press_area("card", ImVec2(std::max(1.0f, width_px), std::max(1.0f, area.height())));
     if (ImGui::IsItemActivated()) form.held_px_per_mm = px_per_mm;
     if (!ImGui::IsItemActive()) return;
     // from where it was taken hold of: a finger or a pen comes down far from where the pointer was

@@ -713,7 +713,7 @@ inline constexpr const char* pageCannotRead =
     "The trials that were stored before cannot be read ({}); the exported file does not contain them.";
 inline constexpr const char* pageOddParticipant =
     "The page's address names the participant '{}', expected 1 to 64 letters and digits, and none of NA, nan, null, "
-    "None. Trials are stored under {}.";
+    "None, all, total. Trials are stored under {}.";
 inline constexpr const char* pageStorageFull = "the storage of this browser is full";
 inline constexpr const char* pagePartNotStored =
     "The trial in progress is not stored ({}); this is tried again at its end.";

@@ -78,15 +78,15 @@ const palpaTrials = (() => {
     };
     const asked_for = (key) => new URLSearchParams(location.search).get(key);
     const protocol = () => asked_for('protocol') === null ? '' : asked_for('protocol').replace(/\.json$/, '');
-    // as study/names.cpp: words that tables take for a missing value are no codes
-    const kPlain = /^(?!(NA|NULL|NaN|None|nan|null)$)[0-9A-Za-z]{1,64}$/;
+    // as is_code() of study/names.cpp: what tables take for a missing value, or for a sum, is no code
+    const isCode = (code) => /^(?!(NA|NULL|NaN|None|nan|null)$)[0-9A-Za-z]{1,64}$/.test(code) && !/^(all|total|sum|overall)$/i.test(code);
     // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
     const participant = () => {
         const asked = asked_for('participant');
         if (protocol() !== '') return asked === null ? '' : asked.slice(0, 64); // a study asks for nobody by itself
-        if (asked !== null && kPlain.test(asked)) remember('palpa-participant', asked);
+        if (asked !== null && isCode(asked)) remember('palpa-participant', asked);
         const kept = recall('palpa-participant');
-        return kPlain.test(kept) ? kept : `tablet${tabletName()}`;
+        return isCode(kept) ? kept : `tablet${tabletName()}`;
     };
     // Names of runs are never given twice, whatever became of their trials.
     const runOf = (name) => Number((/_run-([0-9]+)$/.exec(name) || [0, 0])[1]);
@@ -209,7 +209,7 @@ const palpaTrials = (() => {
         }
         askToStay();
         const odd = asked_for('participant');
-        if (protocol() === '' && odd !== null && !kPlain.test(odd)) tell(palpaFilled(palpaWords.oddParticipant, odd, participant()));
+        if (protocol() === '' && odd !== null && !isCode(odd)) tell(palpaFilled(palpaWords.oddParticipant, odd, participant()));
         await askDesk();
         await pairByAddress();
         window.addEventListener('hashchange', pairByAddress);

@@ -167,13 +167,16 @@ test('the browser closes its storage: what is palpated afterwards can be exporte
 }));
 
 test('an address whose participant is no code is told; one with an empty protocol asks for no study', () => withPage({quiet: true}, async ({page}, desk) => {
-    for (const [query, odd] of [['?participant=Ann%20Lee', 'Ann Lee'], ['?participant=NA', 'NA'], ['?protocol=&participant=', ''], ['?protocol=', null]]) {
+    for (const [query, odd] of [['?participant=Ann%20Lee', 'Ann Lee'], ['?participant=NA', 'NA'], ['?participant=Total', 'Total'], ['?protocol=&participant=', ''], ['?protocol=', null]]) {
         await page.goto(desk.url + query);
         await soon(page);
         await frames(page, 3);
         assert.equal(await tellsOf(page, `the participant '${odd}', expected`), odd !== null, query);
         assert.match((await page.evaluate(() => FS.readdir('/logs').join())), /sub-tablet[0-9a-f]{8}/);
     }
+    await page.evaluate(() => localStorage.setItem('palpa-participant', 'all')); // of a time when it was a code
+    await page.reload();
+    await soon(page);
 }));
 
 test('keys belong to the dialog that is open, wherever in it somebody has clicked; a key that is let go there ends its press', () => withPage({}, async (browser) => {

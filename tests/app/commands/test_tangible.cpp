@@ -104,6 +104,27 @@ TEST_CASE("tangible run: on a plant in virtual time the log repeats byte for byt
     CHECK(contains(again.err, "a/ticks.tsv: found something of that name, expected a new name"));
 }
 
+TEST_CASE("tangible run: a replay takes the fidelity and the rate of the run, and says when it is told others") {
+    const StripFolder strip;
+    const std::string run = "tangible run " + strip.path("scene.json") + " --json --log ";
+    result_of(palpa_with(run + strip.path("a") + " --headless --seconds 1 --fidelity linear --rate-Hz 200"));
+    const std::string replay = " --replay " + strip.path("a/press.tangible.tsv");
+    const files::Json same = result_of(palpa_with(run + strip.path("b") + replay));
+    CHECK(same["fidelity"] == "linear");
+    CHECK(same["rate_Hz"] == 200.0);
+    CHECK(same["ticks"] == 201);
+    const auto commands = [&](const char* log) {
+        std::vector<std::string> out;
+        for (files::Table ticks = files::read_tsv(strip.folder / log / "ticks.tsv"); ticks.next();)
+            out.emplace_back(ticks.field(ticks.column("left_N")));
+        return out;
+    };
+    CHECK(commands("a") == commands("b"));
+    const Called other = palpa_with(run + strip.path("c") + replay + " --fidelity step");
+    CHECK(other.status == 0);
+    CHECK(contains(other.err, "the run had --fidelity linear --rate-Hz 200; the commands are others"));
+}
+
 TEST_CASE("tangible run and characterise: a depth that the device cannot have is refused before anything runs") {
     const StripFolder strip;
     files::write_text_atomically(strip.folder / "press.tsv", "t_s\tx_mm\ty_mm\tdepth_mm\n0\t0\t0\t0\n1\t0\t0\t1e6\n");

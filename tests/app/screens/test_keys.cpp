@@ -76,6 +76,16 @@ TEST_CASE("keys: the list of maps is reached by arrows") {
     CHECK(browser.problem.find("another.map") != std::string::npos);  // which is not there
 }
 
+TEST_CASE("keys: no arrow leads onto the frame of the screen's scale, which is dragged") {
+    Desk desk("");
+    open_screen(Screen::scale, desk.window, desk.app);
+    live_frames(desk, 6);
+    const double before = desk.app.view.scale.card_px_per_mm;
+    for (int i = 0; i < 3; ++i) press(desk, SDLK_DOWN);  // the field, *Save*, and nothing below
+    press(desk, SDLK_RETURN);
+    CHECK(desk.app.view.scale.card_px_per_mm == before);
+}
+
 TEST_CASE("keys: a list of keys that does not fit scrolls") {
     Desk desk("");
     desk.app.view.help = true;
