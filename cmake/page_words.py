@@ -8,5 +8,5 @@ words = {}
 for name, literals in re.findall(r'const char\* page(\w+) =\s*((?:"(?:[^"\\]|\\.)*"\s*)+);', text):
     words[name[0].lower() + name[1:]] = "".join(json.loads(literal) for literal in re.findall(r'"(?:[^"\\]|\\.)*"', literals))
 print("// Of app/screens/words.h.\n'use strict';\n")
-print("const palpaWords = %s;" % json.dumps(words, indent=4, ensure_ascii=False))
+print("const palpaWords = %s;" % json.dumps(words, indent=0, separators=(",", ":"), ensure_ascii=False))
 print("const palpaFilled = (pattern, ...values) => pattern.replace(/\\{\\}/g, () => values.shift());")

@@ -23,9 +23,10 @@ file(REMOVE_RECURSE ${SITE})
 foreach(file ${versioned})
     file(COPY ${PROGRAM}/${file} DESTINATION ${SITE}/${FOLDER})
 endforeach()
-foreach(file ${pages})  # without the lines that are comments, and without indentation: no text in them goes over lines
+foreach(file ${pages})  # without comments that hold no quotes, and without indentation: no text in them goes over lines
     file(READ ${SOURCE}/${file} text)
     string(REGEX REPLACE "\n *//[^\n]*" "" text "${text}")
+    string(REGEX REPLACE "([;,{)]) +// [^\n'\"`]*\n" "\\1\n" text "${text}")
     string(REGEX REPLACE "\n +" "\n" text "${text}")
     file(WRITE ${SITE}/${FOLDER}/${file} "${text}")
 endforeach()

@@ -55,8 +55,9 @@ Box read_box(files::JsonReader box) {
                           "a place in the box, " + files::short_number(low_mm) + " to " +
                               files::short_number(low_mm + size_mm[axis]));
         }
-        out.grading =
-            Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * grading->number("finest_mm", files::kPositive)};
+        const double even_mm = std::min(size_mm[0] / elements[0], size_mm[1] / elements[1]);
+        out.grading = Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]},
+                              1e-3 * grading->number("finest_mm", {0.0, even_mm, true})};
     }
     return out;
 }

@@ -80,7 +80,7 @@ class Pen {
         t_s_ += 0.3;
     }
 
-    double t_s() const { return t_s_; }
+    double last_s() const { return last_s_; }  // of the samples
 
   private:
     void add(platform::Phase phase, const Eigen::Vector2d& p_m, double force_N) {
@@ -104,6 +104,7 @@ class Pen {
         sample.pressure = rounded(share, 1.0 / kLevels);
         if (finger) calibration::set_level(plan_.profile, level, sample);
         take_(sample);
+        last_s_ = t_s_;
         t_s_ += 1.0 / options_.rate_Hz;
     }
 
@@ -112,6 +113,7 @@ class Pen {
     const std::function<void(const platform::Sample&)>& take_;
     scene::View view_;
     double t_s_ = 0.0;
+    double last_s_ = 0.0;
     std::mt19937 random_;
     std::normal_distribution<double> normal_;
     double force_scale_;
@@ -133,7 +135,7 @@ void draw_raster(const scene::Scene& scene, const scene::Plan& plan, const Raste
     const scene::PartTissue* part = scene::parts_of(plan.tissue);
     const bool along = part != nullptr && scene::in_plane(*part);
     const std::vector<Line> lines = along ? lines_on_part(*part) : lines_over(plan);
-    for (std::size_t i = 0; pen.t_s() < options.seconds; ++i) pen.draw(lines[i % lines.size()]);
+    for (std::size_t i = 0; pen.last_s() < options.seconds; ++i) pen.draw(lines[i % lines.size()]);
 }
 
 platform::Trace raster_trace(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options) {

@@ -167,7 +167,13 @@ Map read_map(const fs::path& folder) {
     map.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
     indenter.finish();
     map.nodules_known = json.has("nodules");
-    for (files::JsonReader& nodule : json.objects("nodules")) map.nodules.push_back(read_nodule(nodule));
+    for (files::JsonReader& nodule : json.objects("nodules")) {
+        const Nodule read = read_nodule(nodule);
+        const auto same = [&](const Nodule& other) { return other.id == read.id; };
+        if (std::any_of(map.nodules.begin(), map.nodules.end(), same))
+            nodule.fail("id", files::shown(read.id) + " twice", "an id of its own for each nodule");
+        map.nodules.push_back(read);
+    }
     map.source = read_source(json.object("source"));
 
     if (json.has("noise_N")) map.noise_N = json.number("noise_N", {0.0, 1e5});

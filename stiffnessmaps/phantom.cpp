@@ -1,5 +1,7 @@
 #include "stiffnessmaps/phantom.h"
 
+#include <algorithm>
+
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
@@ -80,7 +82,13 @@ Phantom read_phantom(const std::filesystem::path& path) {
     phantom.tissue = read_elastic(tissue);
     phantom.tissue.assumed = tissue.boolean("assumed", false);
     tissue.finish();
-    for (files::JsonReader& nodule : json.objects("nodules")) phantom.nodules.push_back(read_nodule(nodule, phantom));
+    for (files::JsonReader& nodule : json.objects("nodules")) {
+        const PhantomNodule read = read_nodule(nodule, phantom);
+        const auto same = [&](const PhantomNodule& other) { return other.id == read.id; };
+        if (std::any_of(phantom.nodules.begin(), phantom.nodules.end(), same))
+            nodule.fail("id", files::shown(read.id) + " twice", "an id of its own for each nodule");
+        phantom.nodules.push_back(read);
+    }
 
     files::JsonReader indenter = json.object("indenter");
     indenter.only({"shape", "radius_mm", "length_mm", "contact", "friction"});

@@ -231,6 +231,20 @@ ReportTable froc_table(const FreeResponseReport& found) {
 
 // The cases for the tests: without the conditions under which nobody met a lesion, since they have no figure of merit, and
 // the others could not be tested beside them. Those conditions are noted.
+// Answers that are typed in say which nodules were found, but neither where the marks were nor how sure of them somebody was.
+void note_typed_in(const Observations& seen, std::vector<std::string>& notes) {
+    std::string names;
+    for (const ConditionDisplay& one : seen.displays) {
+        const auto found = std::find(seen.conditions.begin(), seen.conditions.end(), one.condition);
+        const bool searched = std::any_of(seen.rows.begin(), seen.rows.end(), [&](const Observation& row) {
+            return row.condition == static_cast<int>(found - seen.conditions.begin());
+        });
+        if (one.typed_in && searched) names += (names.empty() ? "" : ", ") + one.condition;
+    }
+    if (!names.empty())
+        notes.push_back("Answers that were typed in have no marks, and no free-response figures: " + names);
+}
+
 std::vector<JudgedCase> cases_to_test(const Observations& seen, std::vector<std::string>& notes) {
     std::vector<bool> judged(seen.conditions.size(), false), lesions = judged;
     for (const JudgedCase& one : seen.judged) {
@@ -259,6 +273,7 @@ bool has_cases_without_lesions(const FreeResponse& data) {
 
 FreeResponseReport free_response_report(const Observations& seen, double level) {
     FreeResponseReport out;
+    note_typed_in(seen, out.notes);
     if (seen.judged.empty()) return out;
     if (!all_rated(seen, out)) return out;
     const FreeResponse data = free_response_of(seen.judged, seen.conditions, seen.participants);

@@ -99,6 +99,7 @@ struct Observations {
     std::int64_t excluded_trials = 0;        // finished tests that are left out
     std::int64_t withdrawn_trials = 0;       // those among them of participants who withdrew their data
     int withdrawn_people = 0;                // these participants, of whom `participants` has none
+    int people_without_trial = 0;            // in the study's list, but no trial of theirs began
     std::vector<ConditionDisplay> displays;  // in the order of the protocol; empty for tables of counts
     std::vector<Progress> progress;          // logs against the plan; empty if the plan is not known
     std::vector<Exclusion> exclusions;       // as the experimenter decided

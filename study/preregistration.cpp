@@ -38,7 +38,7 @@ bool any_pairs(const Protocol& protocol, bool pairs) {
 std::string free_response_test(const Protocol& protocol) {
     std::vector<std::size_t> searched;
     for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
-        if (!compares(task_of(protocol, i))) searched.push_back(i);
+        if (!compares(task_of(protocol, i)) && !protocol.conditions[i].typed_in) searched.push_back(i);
     }
     const auto crosses = [&](const Group& group) {
         return std::all_of(searched.begin(), searched.end(), [&](std::size_t i) {
@@ -180,12 +180,12 @@ std::string analysis_part(const Protocol& protocol) {
     out += sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
     const auto searched = [&](bool by_hand) {
         for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
-            if (!compares(task_of(protocol, i)) && (protocol.conditions[i].modality == Modality::hand) == by_hand)
-                return true;
+            if (!compares(task_of(protocol, i)) && protocol.conditions[i].typed_in == by_hand) return true;
         }
         return false;
     };
-    if (searched(true)) out += sheet_row("found nodules and false marks by hand", "as the experimenter types them in");
+    if (searched(true))
+        out += sheet_row("found nodules and false marks that are typed in", "as the experimenter types them in");
     if (searched(false)) {
         out += sheet_row(
                    "a mark is a hit",

@@ -60,6 +60,7 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     if (json.has("cast_of")) json.text("cast_of");  // read_cast() knows the other conditions
     const bool by_hand = condition.modality == Modality::hand;
+    condition.typed_in = by_hand;
     if (by_hand && !condition.scene.empty())
         json.fail("scene", files::shown(condition.scene), "none: a real phantom has no scene");
     if (!by_hand && condition.scene.empty() && task == TaskKind::find) json.fail("scene", "nothing", "a scene file");

@@ -31,6 +31,9 @@ struct Condition {
     // simulated participant would feel.
     std::optional<std::size_t> cast_of{};
     std::optional<TaskKind> task;  // absent: the protocol's; task_of() knows
+    // The answers are typed in: by hand, and on a display that the scene does not drive, which only who has read the scenes
+    // knows (app/study/study_scenes.h).
+    bool typed_in = false;
 };
 
 struct Group {

@@ -361,6 +361,7 @@ Observations read_study(const fs::path& directory) {
         const bool withdrew = takes_data(directory, code, out.notes);
         if (withdrew) study.left_out.insert(code);
         out.withdrawn_people += withdrew && !files.empty();
+        out.people_without_trial += files.empty() && study.people.count(code) > 0;
         if (!files.empty() && !withdrew) out.participants.push_back(code);
         const int index = static_cast<int>(out.participants.size()) - 1;
         if (!files.empty() && study.identity && study.people.count(code) == 0) {

@@ -79,6 +79,7 @@ void count_people_without(const Observations& seen, Report& report) {
     for (const Replacement& one : seen.replacements)
         if (has_logs(one.participant) && excluded.count(one.participant) == 0) replaced.insert(one.participant);
     report.withdrawn_people = seen.withdrawn_people;
+    report.people_without_trial = seen.people_without_trial;
     report.excluded_people = static_cast<int>(excluded.size());
     report.replaced_people = static_cast<int>(replaced.size());
     const int with_logs = static_cast<int>(seen.participants.size()) + seen.withdrawn_people;

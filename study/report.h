@@ -93,6 +93,7 @@ struct Report {
     std::vector<std::string> notes;
     int participants = 0;             // with a test in the tables
     int people_without = 0;           // with logs but no test in the tables: those below, or broken off before
+    int people_without_trial = 0;     // besides: in the study's list, but no trial of theirs began
     int withdrawn_people = 0;         // who withdrew their data
     int excluded_people = 0;          // whom the experimenter left out
     int replaced_people = 0;          // and who are not left out already

@@ -224,6 +224,9 @@ std::string report_markdown(const Report& report) {
             out += "\n" + number_of(report.people_without, "more participant") +
                    (report.people_without == 1 ? " has" : " have") + " logs, but no test in the tables.\n";
         }
+        if (report.people_without_trial > 0)
+            out +=
+                "\n" + number_of(report.people_without_trial, "more participant") + " left before the first trial.\n";
     }
     out += plan_summary(report);
     out +=

@@ -35,31 +35,31 @@ std::string stard_list(const std::vector<std::string>& items) {
 // What a study's trials are.
 struct StardTasks {
     bool on_screen = false;  // nodules searched for, marks judged by the program
-    bool by_hand = false;    // nodules searched for, the answers typed in
+    bool typed_in = false;   // nodules searched for, the answers typed in
     bool choices = false;    // two surfaces compared
 };
 
 StardTasks tasks_in(const Protocol* protocol) {
     StardTasks out;
     for (std::size_t i = 0; protocol && i < protocol->conditions.size(); ++i) {
-        const bool pairs = compares(task_of(*protocol, i)), hand = protocol->conditions[i].modality == Modality::hand;
+        const bool pairs = compares(task_of(*protocol, i)), typed = protocol->conditions[i].typed_in;
         out.choices |= pairs;
-        out.on_screen |= !pairs && !hand;
-        out.by_hand |= !pairs && hand;
+        out.on_screen |= !pairs && !typed;
+        out.typed_in |= !pairs && typed;
     }
     return out;
 }
 
 // What holds for each kind of trial that the study has; empty: not for this kind. Nothing is known without a protocol.
-std::string by_task(const StardTasks& tasks, const std::string& on_screen, const std::string& by_hand,
+std::string by_task(const StardTasks& tasks, const std::string& on_screen, const std::string& typed_in,
                     const std::string& choices) {
     std::string out;
     const auto add = [&](bool there, const std::string& text) {
         if (there) out += (out.empty() ? "" : "; ") + text;
     };
     add(tasks.on_screen, on_screen);
-    add(tasks.by_hand, "by hand: " + by_hand);
-    add(tasks.choices, tasks.on_screen || tasks.by_hand ? "choices: " + choices : choices);
+    add(tasks.typed_in, "answers typed in: " + typed_in);
+    add(tasks.choices, tasks.on_screen || tasks.typed_in ? "choices: " + choices : choices);
     return out;
 }
 
@@ -70,7 +70,8 @@ bool has_settings(const Report& report, const Protocol* protocol) {
     bool out = false;
     for (std::size_t i = 0; protocol && i < protocol->conditions.size(); ++i) {
         const bool pairs = compares(task_of(*protocol, i));
-        out |= !protocol->conditions[i].scene.empty() && (!pairs || !report.simulated);
+        out |= !protocol->conditions[i].scene.empty() && !protocol->conditions[i].typed_in &&
+               (!pairs || !report.simulated);
     }
     return out;
 }
@@ -88,8 +89,12 @@ std::string index_tests(const Report& report, const Protocol* protocol) {
 
 std::string took_part(const Report& report) {
     if (report.participants + report.people_without == 0) return kToFillIn + " took part";  // counts without names
-    return whole(report.participants + report.people_without) + " took part, " + whole(report.participants) +
-           " are analysed";
+    const int began = report.participants + report.people_without;
+    std::string out = whole(began) + " took part, " + whole(report.participants) + " are analysed";
+    if (report.people_without_trial > 0)
+        out = whole(began + report.people_without_trial) + " agreed or gave their code, " +
+              whole(report.people_without_trial) + " of whom left before their first trial; " + out;
+    return out;
 }
 
 std::string stard_flow(const Report& report, const Protocol* protocol) {
@@ -181,7 +186,7 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
               by_task(tasks, "none of placed nodules: they are there or not", "none: a nodule is there or not",
                       "none: one surface is stiffer"));
     const std::string told =
-        protocol && (tasks.on_screen || tasks.by_hand)
+        protocol && (tasks.on_screen || tasks.typed_in)
             ? std::string("; the number of nodules was ") + (protocol->count_told ? "told" : "not told")
             : "";
     form.item("13a", "what those who did the index test knew of the reference",

@@ -87,7 +87,7 @@ void try_middle(const Eigen::Vector2d& middle_m, TactilePlan& plan) {
     const Press press = press_with_force(plan.renderer, middle_m, force_N, work);
     if (!(press.depth_m > 0.0) || !(press.force_N > 0.0)) return;
     plan.stiffness_N_per_m = press.force_N / press.depth_m;
-    if (!plan.pins) return;
+    if (!plan.pins || plan.options.display->schedule == scene::PinSchedule::locked) return;
     Eigen::VectorXd sink_m(plan.pins->pin_m.cols());
     shape_m(plan.renderer, work, sink_m);
     plan.stroke_used_up_N =

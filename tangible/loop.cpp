@@ -74,7 +74,9 @@ void copy_terms(const InverseAnswer& answer, TangibleCommand& out) {
 void fail(const TangiblePlan& plan, TickFault fault, TangibleState& state, TangibleCommand& out) {
     out.fault = fault;
     if (state.failing_since_s < 0.0) state.failing_since_s = out.time_s;
-    if (fault == TickFault::stopped || out.time_s - state.failing_since_s > plan.loop.hold_s) state.relaxed = true;
+    constexpr double kRounding_s = 1e-6;
+    const bool held_long = out.time_s - state.failing_since_s > plan.loop.hold_s - kRounding_s;
+    if (fault == TickFault::stopped || held_long) state.relaxed = true;
     if (!state.relaxed) {
         out.held = true;
         out.actuation = state.actuation;

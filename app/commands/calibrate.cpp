@@ -186,7 +186,10 @@ void add_fit(CLI::App& calibrate) {
     command->add_option("--os", arguments->device.os, "operating system in the profile");
     command->add_option("--date", arguments->device.date, "date of the recording in the profile");
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
-    command->callback([arguments] { fit(*arguments); });
+    command->callback([command, arguments] {
+        refuse_unused(*command, "--full-contact-area-px2", arguments->level == "contact_area", "--level contact_area");
+        fit(*arguments);
+    });
 }
 
 struct CheckArguments {

@@ -172,9 +172,7 @@ void add_calibrate_record(CLI::App& calibrate) {
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([command, arguments] {
         check_of_sensor(*command, arguments->record.sensor);
-        if (command->count("--full-contact-area-px2") > 0 && arguments->level != "contact_area")
-            throw files::bad_input("--full-contact-area-px2", "", "--level " + arguments->level,
-                                   "--level contact_area");
+        refuse_unused(*command, "--full-contact-area-px2", arguments->level == "contact_area", "--level contact_area");
         record(*arguments);
     });
 }

@@ -1,6 +1,7 @@
 // palpa maps import
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "files/progress_line.h"
 #include "files/regular_file.h"
 #include "files/text.h"
+#include "stiffnessmaps/import/choices.h"
 #include "stiffnessmaps/import/import.h"
 #include "stiffnessmaps/map_file.h"
 
@@ -251,6 +253,20 @@ void check_used(const CLI::App& command, stiffnessmaps::RecordingForm form) {
     }
 }
 
+// What the recording, or another option, decides leaves no room for an option that says otherwise.
+void check_chosen(const CLI::App& command, const stiffnessmaps::Map& map) {
+    for (const char* option : {"--layers", "--pitch-mm", "--radius-mm", "--contact", "--contact-force-N",
+                               "--surface-z-mm", "--surface-node-mm", "--at-depth-mm"}) {
+        if (command.count(option) == 0) continue;
+        const auto by_it = [&](const stiffnessmaps::SourceChoice& choice) {
+            return choice.option.find(option) != std::string::npos && choice.how == stiffnessmaps::kAsAskedFor;
+        };
+        if (std::any_of(map.source.choices.begin(), map.source.choices.end(), by_it)) continue;
+        throw files::bad_input(option, "", "a recording, or other options, that leave nothing for this one to choose",
+                               "another combination (--explain without it shows what was chosen, and why)");
+    }
+}
+
 void import_map(const CLI::App& command, const ImportArguments& a) {
     stiffnessmaps::ImportOptions options = options_of(a);
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
@@ -258,17 +274,15 @@ void import_map(const CLI::App& command, const ImportArguments& a) {
         throw files::bad_input("maps import", "", "no output",
                                "-o NAME.map (or --explain, to see what would be chosen)");
     if (!a.output.empty()) files::check_new(a.output);
-    for (const char* name : {"--poisson", "--cylinder-length-mm"}) {
-        if (command.count(name) > 0 && options.quantity != stiffnessmaps::Quantity::young)
-            throw files::bad_input(name, "", "another quantity than Young's moduli",
-                                   "--quantity young, for which this option is");
-    }
+    for (const char* name : {"--poisson", "--cylinder-length-mm"})
+        refuse_unused(command, name, options.quantity == stiffnessmaps::Quantity::young, "--quantity young");
     stiffnessmaps::ImportReport report;
     std::optional<files::ProgressLine> line(std::in_place);
     options.progress = [&line](const char* what, double done) { line->show(what, done > 0.0 ? done : std::nan("")); };
     const stiffnessmaps::Map map = stiffnessmaps::import_recording({a.files.begin(), a.files.end()}, options, report);
     line.reset();
     check_used(command, report.form);
+    check_chosen(command, map);
     if (!a.output.empty()) stiffnessmaps::write_map(map, a.output);
     for (const std::string& note : report.notes) std::fprintf(stderr, "palpa: %s\n", note.c_str());
     if (a.json) {

@@ -68,6 +68,10 @@ CLI::Validator code_of_participant() {
     return CLI::Validator(strip, "");
 }
 
+void refuse_unused(const CLI::App& command, const char* option, bool used, const std::string& needed) {
+    if (!used && command.count(option) > 0) throw files::bad_input(option, "", "no " + needed, needed);
+}
+
 void refuse_what_is_no_value(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();

@@ -23,6 +23,9 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 // For a participant's code: takes it also as folders and participants.tsv write it, with `sub-` in front.
 CLI::Validator code_of_participant();
 
+// Throws files::InputError if an option is given that changes nothing without `needed`.
+void refuse_unused(const CLI::App& command, const char* option, bool used, const std::string& needed);
+
 // Makes every option of the command and its subcommands refuse values that mean nothing. Numbers refuse words, "nan" and
 // "inf" (CLI11's check of a range lets "nan" pass, since it is neither below nor above). Unsigned numbers refuse -1, which CLI11
 // would wrap around. All options refuse an empty text: most often it is an unset variable of a script, and must count

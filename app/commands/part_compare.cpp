@@ -160,7 +160,13 @@ void add_part_compare(CLI::App& part) {
         ->capture_default_str();
     command->add_option("-o,--output", options->figure, "also draw a figure: FILE.png, .svg or .pdf");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
-    command->callback([options] { compare(*options); });
+    command->callback([options, command] {
+        const bool iterates = options->method == "voxels";
+        refuse_unused(*command, "--cell-mm", iterates || options->method == "factorised",
+                      "--method voxels or factorised");
+        refuse_unused(*command, "--tolerance", iterates, "--method voxels");
+        compare(*options);
+    });
 }
 
 }  // namespace palpa::app

@@ -131,7 +131,14 @@ void add_part_evaluate(CLI::App& part) {
     command->add_option("--tolerance", options->tolerance, "relative error of the energy at which voxels stops")
         ->check(CLI::Range(1e-14, 0.5))
         ->capture_default_str();
-    command->callback([options] { print_stiffness(*options); });
+    command->callback([options, command] {
+        const auto asked = methods_of(options->methods);
+        const bool iterates = std::find(asked.begin(), asked.end(), Method::voxels) != asked.end();
+        refuse_unused(*command, "--cell-mm", iterates || asked.back() == Method::factorised,
+                      "--method voxels or factorised");
+        refuse_unused(*command, "--tolerance", iterates, "--method voxels");
+        print_stiffness(*options);
+    });
 }
 
 }  // namespace palpa::app

@@ -88,6 +88,19 @@ std::optional<study::Protocol> protocol_of(const fs::path& input) {
     return study::read_protocol(input / "protocol.json");
 }
 
+// The logs know which answers were typed in, without the scenes.
+std::string stard_of(const study::Report& report, const study::Observations& seen,
+                     std::optional<study::Protocol> protocol) {
+    if (!protocol) return study::stard_checklist(report, nullptr);
+    for (study::Condition& condition : protocol->conditions) {
+        const auto typed = [&](const study::ConditionDisplay& one) {
+            return one.condition == condition.id && one.typed_in;
+        };
+        condition.typed_in = condition.typed_in || std::any_of(seen.displays.begin(), seen.displays.end(), typed);
+    }
+    return study::stard_checklist(report, &*protocol);
+}
+
 void write_report(const study::Report& report, const study::Observations& seen,
                   const std::optional<study::Protocol>& protocol, const fs::path& folder) {
     std::error_code error;
@@ -106,7 +119,7 @@ void write_report(const study::Report& report, const study::Observations& seen,
     }
     const std::string script = study::lme4_script(report.mixed);
     if (!script.empty()) files::write_text_atomically(folder / "mixed_model.R", script);
-    files::write_text_atomically(folder / "stard.md", study::stard_checklist(report, protocol ? &*protocol : nullptr));
+    files::write_text_atomically(folder / "stard.md", stard_of(report, seen, protocol));
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
     std::string failed;
     for (const auto draw : {&figures::draw_figures, &figures::draw_froc_figure, &figures::draw_psychometric_figure}) {

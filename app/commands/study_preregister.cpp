@@ -35,9 +35,10 @@ std::vector<files::Json> hashes_of(const StudyScenes& scenes) {
 }
 
 void preregister(const PreregisterOptions& options) {
-    const study::Protocol protocol = study::read_protocol(options.protocol);
+    study::Protocol protocol = study::read_protocol(options.protocol);
     study::refuse_mixed_ratings(protocol);
     const StudyScenes scenes = load_study_scenes(protocol);
+    note_typed_in(scenes, protocol);
     if (!options.output.empty()) {
         std::vector<std::filesystem::path> inputs{options.protocol};
         for (const auto& scene : scenes) {

@@ -307,9 +307,10 @@ bool Live::turn(Draw draw) {
     // a browser that calls for each frame of its display sets the pace itself while anything moves
     const double early_s = waits ? 0.0 : kFrame_s;
     if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
+    const bool first = it.app.frames == 0;
     show(*it.window, it.app, {*it.gui, *it.tissue}, now_s - it.frame_s);  // 3. show
     it.frame_s = now_s;
-    if (it.app.frames == 1) {
+    if (first && it.app.frames > 0) {
         it.first_frame_s = 1e-9 * static_cast<double>(scene::steady_ns()) - it.asked_s;
         it.shown_s = it.window->now_s();
     }

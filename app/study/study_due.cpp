@@ -19,13 +19,7 @@ std::size_t due_condition_index(const StudyRun& run) {
 
 const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_condition_index(run)]; }
 
-bool typed_in(const StudyRun& run, std::size_t condition) {
-    const study::Modality modality = run.protocol.conditions[condition].modality;
-    if (modality == study::Modality::hand) return true;
-    const auto& scene = run.scenes[condition];
-    if (modality == study::Modality::tangible) return !(scene && scene->scene.tangible);
-    return modality == study::Modality::shape_display && !(scene && scene->scene.tactile);
-}
+bool typed_in(const StudyRun& run, std::size_t condition) { return run.protocol.conditions[condition].typed_in; }
 
 bool feels_device(const StudyRun& run) {
     if (!shows_tissue(run)) return false;

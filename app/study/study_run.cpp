@@ -239,6 +239,7 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     run.protocol = protocol;
     run.directory = directory;
     run.scenes = load_study_scenes(protocol);
+    note_typed_in(run.scenes, run.protocol);
     run.identities = identities_of(run.scenes);
     for (const auto& scene : run.scenes) {
         run.stimuli.emplace_back();

@@ -87,6 +87,16 @@ StudyScenes load_study_scenes(const study::Protocol& protocol) {
     return scenes;
 }
 
+void note_typed_in(const StudyScenes& scenes, study::Protocol& protocol) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const study::Modality modality = protocol.conditions[i].modality;
+        const bool driven = modality == study::Modality::tangible ? scenes[i] && scenes[i]->scene.tangible
+                                                                  : scenes[i] && scenes[i]->scene.tactile;
+        const bool display = modality == study::Modality::tangible || modality == study::Modality::shape_display;
+        protocol.conditions[i].typed_in = modality == study::Modality::hand || (display && !driven);
+    }
+}
+
 files::Json identity_of(const std::optional<StudyScene>& scene) {
     files::Json json = files::Json::object();
     if (!scene) return json;

@@ -18,6 +18,9 @@ struct StudyScene {
 };
 using StudyScenes = std::vector<std::optional<StudyScene>>;
 
+// Notes in the protocol which conditions' answers are typed in, for want of a device that the scene drives.
+void note_typed_in(const StudyScenes& scenes, study::Protocol& protocol);
+
 // Loads the scenes. Throws InputError that names the protocol, the condition and what is wrong with its scene, map or
 // profile. Conditions with the same scene and profile share one plan.
 StudyScenes load_study_scenes(const study::Protocol& protocol);

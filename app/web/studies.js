@@ -100,30 +100,44 @@ const palpaStudies = (() => {
         }
     };
 
-    // Conditions that drive a device need the desk's machine.
-    const needsDevices = (protocol) => (protocol?.conditions ?? []).some(({modality, scene}) => (modality === 'shape-display' || modality === 'tangible') && scene);
+    const inApp = async (path) => FS.readFile(`${kAssets}/${path}`, {encoding: 'utf8'});
+
+    // Conditions whose scene drives a device need the desk's machine. Of scenes that cannot be read it is not known. The program
+    // says what is wrong with a protocol that is none.
+    const needsDevices = async (protocol, read) => {
+        for (const condition of [protocol?.conditions].flat()) {
+            const {modality, scene} = Object(condition);
+            const key = {'shape-display': 'tactile', tangible: 'tangible'}[modality];
+            if (!key || !scene) continue;
+            const among = `scenes/${scene}`;
+            const text = await read(plain(`protocols/${scene}`)).catch(() => read(among)).catch(() => inApp(among)).catch(() => null);
+            if (text === null || key in Object(parse(text))) return true;
+        }
+        return false;
+    };
 
     // What can be chosen: {name, title, from}, by name.
     const list = async () => {
         const out = new Map();
         const elsewhere = new Map();
-        const add = (name, text, from) => {
-            const protocol = parse(text);
-            const title = protocol?.name ?? name;
-            out.delete(name);
-            elsewhere.delete(name);
-            if (needsDevices(protocol)) elsewhere.set(name, title);
-            else out.set(name, {name, title, from});
-        };
-        for (const file of FS.readdir(`${kAssets}/protocols`)) {
-            if (file.endsWith('.json')) add(file.slice(0, -5), FS.readFile(`${kAssets}/protocols/${file}`, {encoding: 'utf8'}), palpaWords.inTheApp);
-        }
-        const nameOf = (path) => path.slice('protocols/'.length, -5);
         const isProtocol = (path) => path.startsWith('protocols/') && path.endsWith('.json');
-        for (const {path, bytes} of kept.values()) if (isProtocol(path)) add(nameOf(path), textOf(bytes), palpaWords.ofDeskStored);
+        const add = async (paths, from, read) => {
+            for (const path of paths.filter(isProtocol)) {
+                const name = path.slice('protocols/'.length, -5);
+                const protocol = parse(await read(path));
+                const title = protocol?.name ?? name;
+                const needs = await needsDevices(protocol, read);
+                out.delete(name);
+                elsewhere.delete(name);
+                if (needs) elsewhere.set(name, title);
+                else out.set(name, {name, title, from});
+            }
+        };
+        await add(FS.readdir(`${kAssets}/protocols`).map((file) => `protocols/${file}`), palpaWords.inTheApp, inApp);
+        await add([...kept.keys()], palpaWords.ofDeskStored, async (path) => textOf(kept.get(path).bytes));
         let said = '';
         try {
-            for (const path of [...await atDesk()].filter(isProtocol)) add(nameOf(path), textOf(await askFile(path)), palpaWords.ofDesk);
+            await add([...await atDesk()], palpaWords.ofDesk, async (path) => textOf(await askFile(path)));
         } catch (away) {
             said = palpaWords.noDesk;
         }

@@ -156,6 +156,9 @@ files::NpyArray read_array(const fs::path& path, const std::string& dataset) {
     if (!kind)
         throw files::bad_input(file, "", "another kind of file",
                                "an array: .npy, rows of numbers, MATLAB, HDF5, PNG or TIFF");
+    if (!dataset.empty() && *kind != ArrayKind::matlab && *kind != ArrayKind::hdf5)
+        throw files::bad_input("--dataset", "", files::shown(dataset) + " for " + file + ", which holds one array",
+                               "a MATLAB or HDF5 file");
     files::NpyArray array;
     switch (*kind) {
         case ArrayKind::npy:

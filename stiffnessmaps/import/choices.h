@@ -9,10 +9,12 @@ namespace palpa::stiffnessmaps {
 
 using ChoiceValue = std::variant<double, std::string, std::vector<double>>;
 
+inline constexpr const char* kAsAskedFor = "as asked for";
+
 // `stated`: the person chose the value, which then is the only reason given.
 inline void add_choice(MapSource& source, std::string key, ChoiceValue value, std::string how, std::string option,
                        bool stated = false) {
-    if (stated) how = "as asked for";
+    if (stated) how = kAsAskedFor;
     source.choices.push_back({std::move(key), std::move(value), std::move(how), std::move(option)});
 }
 

@@ -61,6 +61,9 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
         files::Table table = open_table(files[i], report);
         const Columns columns = find_columns(table, options);
         report.form = options.form.value_or(form_of(columns, table));
+        if (options.depth_unit && !columns.has(Role::depth) && !columns.has(Role::commanded_depth))
+            throw files::bad_input("--depth-unit", "", files[i].string() + ", which has no column of depths",
+                                   "one, or --length-unit for heights");
         if (i == 0) {
             add_choice(before, "form", name_of(report.form), "the columns that the file has", "--form",
                        options.form.has_value());

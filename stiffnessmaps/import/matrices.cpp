@@ -97,7 +97,11 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
             path.string(), "", "an image of counts without a unit",
             "what one count is: --scale, with --quantity force (N), stiffness (N/mm) or young (kPa)");
     }
-    if (array.shape.size() == 3) put_in_order(array, options.axes);
+    if (array.shape.size() == 3)
+        put_in_order(array, options.axes);
+    else if (options.axes != ImportOptions{}.axes)
+        throw files::bad_input("--axes", "", options.axes + " for " + path.string() + ", which has two dimensions",
+                               "an array of three");
     const std::size_t n_y = array.shape[array.shape.size() - 2];
     const std::size_t n_x = array.shape.back();
     if (stack.values.empty()) {

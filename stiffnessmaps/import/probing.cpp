@@ -300,12 +300,17 @@ void fill_scattered(const Probing& probing, const GridPlan& plan, Map& map, cons
 
 void note_grid(const GridPlan& plan, bool on_grid, const ImportOptions& options, MapSource& source) {
     add_choice(source, "grid", on_grid ? "on-grid" : name_of(plan.method),
-               on_grid ? "the points lie on a regular grid" : "the points lie on no regular grid", "--grid",
-               options.gridding.has_value());
-    add_choice(source, "pitch_mm", choice_mm({plan.x.pitch_m, plan.y.pitch_m}),
-               on_grid ? "step between the places" : "median distance to the nearest point", "--pitch-mm",
+               on_grid           ? "the points lie on a regular grid"
+               : options.pitch_m ? "a pitch was asked for"
+                                 : "the points lie on no regular grid",
+               "--grid", options.gridding.has_value());
+    const std::vector<double> pitch_mm = choice_mm({plan.x.pitch_m, plan.y.pitch_m});
+    if (on_grid) {
+        add_choice(source, "pitch_mm", pitch_mm, "step between the places", "--pitch-mm");
+        return;
+    }
+    add_choice(source, "pitch_mm", pitch_mm, "median distance to the nearest point", "--pitch-mm",
                options.pitch_m.has_value());
-    if (on_grid) return;
     add_choice(source, "radius_mm", choice_mm(plan.radius_m), "1.5 times the distance to the nearest point",
                "--radius-mm", options.radius_m.has_value());
 }

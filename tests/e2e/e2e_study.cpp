@@ -362,6 +362,10 @@ TEST_CASE("consent: a person agrees by a key of its own, practises a pair, and g
     const std::filesystem::path now = folder / "log/sub-01/now.json";
     const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
     const std::string study = "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string();
+    // nothing moves on the consent page, and its window closes in time all the same
+    const std::string home = folder.path().string();
+    REQUIRE(shell("HOME=" + home + " timeout 60 " PALPA_PROGRAM " " + study + " --participant 01 --quit-after-s 1 >" +
+                  home + "/closed.txt") == 0);
     // who leaves at the consent page leaves nothing
     REQUIRE(run_program(folder, study + " --participant 01", now, [&] { end_program(folder, "TERM"); }) == 0);
     CHECK_FALSE(std::filesystem::exists(folder / "log/sub-01"));

@@ -122,6 +122,9 @@ TEST_CASE("map file: absurd numbers and unknown keys are refused by key") {
     CHECK(contains(refusal_of_map("\"none\"", "\"recorded\""),
                    "tangential: found recorded, expected tangential_x_N.npy"));
     CHECK(contains(refusal_of_map("\"x_mm\": 2.0", "\"x_mm\": 20.0"), "are x and y of the arrays exchanged?"));
+    CHECK(contains(refusal_of_map("\"nodules\": [",
+                                  "\"nodules\": [{\"id\": \"A\", \"origin\": \"placed\", \"x_mm\": 1, \"y_mm\": 1},"),
+                   "id: found 'A' twice"));
     CHECK(contains(refusal_of_map("}", ""), "map.json: line"));
 }
 

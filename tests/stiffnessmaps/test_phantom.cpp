@@ -31,6 +31,7 @@ TEST_CASE("phantom: absurd blocks are refused by key") {
     CHECK(contains(refusal_of_phantom("47000", "-1"), "tissue.young_Pa: found -1"));
     CHECK(
         contains(refusal_of_phantom("35, 35, 11", "35, 35, 24"), "nodules[0].centre_mm: found 24 with a radius of 5"));
+    CHECK(contains(refusal_of_phantom("\"id\": \"B\"", "\"id\": \"A\""), "nodules[1].id: found 'A' twice"));
     CHECK(contains(refusal_of_phantom("[2, 3, 4, 5, 6, 7]", "[2, 3, 40]"), "depths_mm: found 40"));
     CHECK(contains(refusal_of_phantom("[2, 3, 4, 5, 6, 7]", "[3, 2]"), "expected ascending depths"));
     CHECK(contains(refusal_of_phantom("159, 59", "159.5, 59"), "grid.count: found 159.5"));

@@ -86,6 +86,17 @@ TEST_CASE("free-response report: no lesion-free case leaves wafroc1 alone, and m
     CHECK(report_of(Observations()).is_null());
 }
 
+TEST_CASE("free-response report: conditions whose answers are typed in are named as left out") {
+    Observations seen = observed(froc_set(froc_json("froc_small.json")));
+    CHECK(report_of(seen)["notes"].empty());
+    seen.conditions.emplace_back("hand");
+    seen.displays = {{"A", "pen", false}, {"hand", "hand", true}, {"nobody's", "hand", true}};
+    seen.rows.push_back({static_cast<int>(seen.conditions.size()) - 1, 0, -1, 0, 1, 1, 0});
+    const Json notes = report_of(seen)["notes"];
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0] == "Answers that were typed in have no marks, and no free-response figures: hand");
+}
+
 TEST_CASE("free-response report: a condition without any lesion is named, and keeps no other from the tests") {
     Observations seen = observed(froc_set(froc_json("froc_small.json")));
     std::erase_if(seen.judged, [](const JudgedCase& one) { return one.lesions.empty(); });

@@ -82,6 +82,7 @@ TEST_CASE("preregistration: power is promised only where it can be computed") {
     Protocol hand = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/effects.json");
     for (Condition& condition : hand.conditions) {
         condition.modality = Modality::hand;
+        condition.typed_in = true;
         condition.scene.clear();
     }
     const std::string sheet = preregistration_sheet(hand, {0, "palpa 1", {}});

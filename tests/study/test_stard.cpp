@@ -38,8 +38,8 @@ TEST_CASE("STARD checklist: it describes the trials that the study has") {
     const Protocol displays = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/four-displays.json");
     const std::string form = stard_checklist({}, &displays);
     CHECK(contains(form, "8 mm of its axis"));
-    CHECK(contains(form, "by hand: what the experimenter took for found: TO BE FILLED IN"));
-    CHECK(contains(form, "by hand: the experimenter, who judges and types"));
+    CHECK(contains(form, "answers typed in: what the experimenter took for found: TO BE FILLED IN"));
+    CHECK(contains(form, "answers typed in: the experimenter, who judges and types"));
 }
 
 TEST_CASE("STARD checklist: the protocol answers what it states, and simulated people are called so") {
@@ -56,6 +56,10 @@ TEST_CASE("STARD checklist: the protocol answers what it states, and simulated p
                    "15 took part, 11 are analysed (1 withdrew their data, 1 left out by the experimenter, 1 replaced, "
                    "1 without a finished test)"));
     CHECK(contains(form, "NO PERSON TOOK PART"));
+    CHECK_FALSE(contains(form, "before their first trial"));
+    report.people_without_trial = 2;
+    CHECK(contains(stard_checklist(report, &protocol),
+                   "17 agreed or gave their code, 2 of whom left before their first trial; 15 took part, 11 are"));
     CHECK(contains(form, "tests of at most 60 s"));
 }
 
@@ -80,4 +84,8 @@ TEST_CASE("STARD checklist and preregistration: bars and line breaks of a protoc
         contains(preregistration_sheet(protocol, {}), "no test: it needs people who take part under every condition"));
     protocol.groups[1].conditions = {0, 1, 2};
     CHECK(contains(preregistration_sheet(protocol, {}), "Obuchowski and Rockette"));
+    protocol.groups = {{"all", {0, 1, 2}}};
+    protocol.conditions[1].typed_in = protocol.conditions[2].typed_in = true;
+    CHECK(contains(preregistration_sheet(protocol, {}), "no test: it needs several conditions"));
+    CHECK(contains(preregistration_sheet(protocol, {}), "false marks that are typed in"));
 }

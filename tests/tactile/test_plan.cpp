@@ -78,6 +78,8 @@ TEST_CASE("tactile plan: the stages say at which force the stroke is used up") {
         said = said || contains(stage.fidelity,
                                 "the stroke is used up at " + files::short_number(plan->stroke_used_up_N) + " N");
     CHECK(said);
+    const TactileScene locked(R"({"display": {"schedule": "locked"}})");
+    CHECK_FALSE(std::isfinite(locked.tactile_plan()->stroke_used_up_N));  // no shape is shown
     // ten times as stiff: at a tenth of the depth per newton the stroke lasts ten times as long
     const TactileScene stiff(kArmAndPins, 10.0);
     CHECK(stiff.tactile_plan()->stroke_used_up_N == close_to(10.0 * plan->stroke_used_up_N).epsilon(1e-6));

@@ -109,7 +109,7 @@ TEST_CASE("tangible loop: on failure the last valid command for 100 ms, then rel
         CHECK(held.held);
         CHECK(held.actuation == last.actuation);
     }
-    const TangibleCommand rest = loop.tick(0.33, NAN);
+    const TangibleCommand rest = loop.tick(0.31, NAN);
     CHECK(rest.relaxed);
     CHECK(rest.actuation == loop.plan.relaxed);
     CHECK(loop.tick(0.34, 2e-3).relaxed);  // the finger is still on it

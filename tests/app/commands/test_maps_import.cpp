@@ -192,6 +192,15 @@ TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves
     refused("r.csv " + kColumns + "--surface-z-mm 2 -o n.map", "expected a table of sliding");
     refused("a_2mm.csv --spacing-mm 1 --layers 5 -o n.map",
             "--layers: found a recording of the form matrices, expected a table");
+    const char* nothing_left = "leave nothing for this one to choose";
+    refused("r.csv " + kColumns + "--depths-mm 1,2 --layers 2 -o n.map", nothing_left);
+    refused("r.csv " + kColumns + "--grid on-grid --pitch-mm 4 -o n.map", nothing_left);
+    refused("r.csv " + kColumns + "--contact first-row --contact-force-N 5 -o n.map", nothing_left);
+    write_text_atomically(folder / "z.csv", "x,y,z,fn\n0,0,0,0\n0,0,-1,1\n5,0,0,0\n5,0,-1,1\n");
+    refused("z.csv --depth-unit m -o n.map", "--depth-unit: found z.csv, which has no column of depths");
+    refused("a_2mm.csv --spacing-mm 1 --dataset F -o n.map", "--dataset: found 'F' for a_2mm.csv");
+    refused("a_2mm.csv --spacing-mm 1 --axes yxd -o n.map",
+            "--axes: found yxd for a_2mm.csv, which has two dimensions");
     refused("r.csv " + kColumns + "-o none/n.map", "no folder to put it into");
     CHECK(import(folder, "mN.csv --force-unit mN -o n.map").status == 0);
     CHECK(read_map(folder / "n.map").normal_N.back() == close_to(2.1f));

@@ -144,6 +144,15 @@ TEST_CASE("part: wrong usage and wrong parts end with status 2 and a message") {
     }
     CHECK(test::contains(palpa_with("part stiffness " + beam + " --load head").err, "one of tip"));
     CHECK(test::contains(palpa_with("part stiffness " + beam).out, "euler-bernoulli"));
+    for (const char* unused : {"--cell-mm 2.5", "--tolerance 1e-9"}) {
+        const std::string beams = " --method timoshenko " + std::string(unused);
+        for (const std::string& command :
+             {"part stiffness " + beam + beams, "part compare " + beam + " " + beam + beams}) {
+            CAPTURE(command);
+            CHECK(palpa_with(command).status == 2);
+            CHECK(test::contains(palpa_with(command).err, "found no --method voxels"));
+        }
+    }
     const TemporaryFolder folder;
     const std::string part = (folder / "a.svg").string();  // an input is never replaced
     std::filesystem::copy_file(beam, part);

@@ -645,6 +645,7 @@ TEST_CASE("study run: a tangible condition whose scene has a soft device is driv
     StudyRun run = open_study_run(read_protocol(folder / "p.json"), folder / "log", "01");
     CHECK(typed_in(run, 0));
     run.scenes[0]->scene.tangible.emplace();
+    note_typed_in(run.scenes, run.protocol);
     CHECK_FALSE(typed_in(run, 0));
     begin_step(run);
     REQUIRE(trial_waits(run));
