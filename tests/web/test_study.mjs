@@ -432,3 +432,27 @@ test('a study with a linear tissue is refused in words before anybody begins', o
     await page.waitForURL((url) => url.search === '');
     await started(page);
 }, {protocols: {partly: {...protocol, conditions: [...protocol.conditions, {id: 'live', modality: 'pen', scene: 'linear.json'}]}}}));
+
+test('the list of studies knows by their scenes which ones drive devices, and a protocol that is none takes no other from it', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    const check = async () => {
+        const {studies, said} = await page.evaluate(() => palpaStudies.list());
+        const names = studies.map(({name}) => name);
+        for (const name of ['typed', 'broken', 'odd', 'paper']) assert.ok(names.includes(name), `${name} in ${names}`);
+        for (const name of ['driven', 'four-displays']) assert.ok(!names.includes(name), `${name} in ${names}`);
+        assert.match(said, /^On the desk's machine only.*Driven/);
+    };
+    await open(browser, desk.url);
+    await check();
+    await page.goto(`${desk.url}?protocol=broken&participant=1`);
+    await page.waitForFunction(() => document.getElementById('message-text').textContent.includes('cannot be run here'));
+    await page.click('#leave');
+    await page.waitForURL((url) => url.search === '');
+    await started(page);
+    await check();
+}, {protocols: {
+    broken: {...protocol, name: 'Broken', conditions: {a: 1}},
+    odd: {name: 'Odd', conditions: [null, 5]},
+    typed: {...protocol, name: 'Typed', conditions: [{id: 'pins', modality: 'shape-display', scene: 'default.json'}]},
+    driven: {...protocol, name: 'Driven', conditions: [{id: 'soft', modality: 'tangible', scene: 'block-soft.json'}]},
+}}));
