@@ -49,7 +49,8 @@ double single_p99_us(const scene::Scene& scene, const scene::Plan& plan, const p
 }
 
 SpeedRow row_of(const std::string& what, const Timing& timing) {
-    return {what, quantile_us(timing, 0.0), quantile_us(timing, 0.5), kUnknown, static_cast<int>(timing.us.size())};
+    const double median_us = files::quantile(timing.us, 0.5, files::QuantileType::between);
+    return {what, quantile_us(timing, 0.0), median_us, kUnknown, static_cast<int>(timing.us.size())};
 }
 
 }  // namespace

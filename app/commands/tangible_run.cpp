@@ -200,17 +200,20 @@ void name_limits(const session::GuardFigures& guard, files::Json& json) {
 }
 
 // Ticks that come too late make a coarser loop, whose force lags behind the finger.
-void note_missed(double rate_Hz, files::Json& json) {
+void note_missed(const tangible::LoopOptions& loop, files::Json& json) {
     constexpr std::int64_t kFew = 50;  // a busy machine now and then misses one
     const auto ticks = json["ticks"].get<std::int64_t>();
     const auto missed = json["missed_ticks"].get<std::int64_t>();
     if (missed * kFew <= ticks + missed) return;
+    const std::string less = loop.inverse.fidelity == tangible::Fidelity::linear  ? ""
+                             : loop.inverse.fidelity == tangible::Fidelity::stale ? "--fidelity linear or "
+                                                                                  : "--fidelity stale or linear, or ";
     const std::string note = std::to_string(missed) + " of " + std::to_string(ticks + missed) +
                              " ticks were missed: a tick takes " +
                              files::short_number(1e-3 * json["tick_us"]["p50"].get<double>()) + " ms here (median; " +
                              files::short_number(1e-3 * json["tick_us"]["p99"].get<double>()) +
-                             " ms in one of a hundred), and the period is " + files::short_number(1e3 / rate_Hz) +
-                             " ms; --fidelity stale or linear, or a lower --rate-Hz, take less";
+                             " ms in one of a hundred), and the period is " + files::short_number(1e3 / loop.rate_Hz) +
+                             " ms; " + less + "a lower --rate-Hz takes less";
     json["notes"].push_back(note);
     std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
 }
@@ -271,7 +274,7 @@ void run_tangible(TangibleRunArguments arguments) {
     json["devices"] = files::Json::array();
     if (arguments.replay.empty()) {
         json["devices"] = devices_json(*plan, real, arguments.ports);
-        note_missed(plan->loop.rate_Hz, json);
+        note_missed(plan->loop, json);
     } else {  // no device takes part; rows know neither what the drives were told nor which ticks were missed
         json["replay"] = arguments.replay;
         json["command"] = nullptr;

@@ -51,6 +51,15 @@ void press_by_hold(App& app) {
     app.hold.finger = app.hold.finger || lacks(platform::Tool::finger);
 }
 
+// A replay gives the recorded trial: another one, or another tissue, would log the rest of the trace as a trial of its own.
+void stay_with_trace(Wishes& wishes) {
+    wishes.again = wishes.next = false;
+    wishes.scene.reset();
+    wishes.profile.reset();
+    wishes.mode.reset();
+    wishes.guided.reset();
+}
+
 }  // namespace
 
 void keep_settings(App& app) {
@@ -69,6 +78,7 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     } else {
         app.asked.reset();
     }
+    if (app.trace) stay_with_trace(wishes);
     if (wishes.quit) app.quit = true;
     const StudyRun* study = study_of(app.doing);
     const bool waits = study != nullptr && study->keeping_since_s;  // the problem is why, and says what can be done

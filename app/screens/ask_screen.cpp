@@ -13,7 +13,7 @@ namespace {
 
 bool ends_trial(const Wishes& wishes) {
     return wishes.again || wishes.next || wishes.quit || wishes.scene || wishes.profile || wishes.mode ||
-           wishes.above_finger || wishes.px_per_mm || (wishes.guided && *wishes.guided);
+           wishes.above_finger || wishes.px_per_mm || wishes.studies || (wishes.guided && *wishes.guided);
 }
 
 // The question, and the names of the two ways to answer it.

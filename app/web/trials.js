@@ -68,13 +68,13 @@ const palpaTrials = (() => {
     };
 
     const hex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
+    let tablet = recall('palpa-tablet'); // one name for this page, even where the browser remembers nothing
     const tabletName = () => {
-        let name = recall('palpa-tablet');
-        if (!/^[0-9a-f]{8}$/.test(name)) {
-            name = hex(crypto.getRandomValues(new Uint8Array(4)));
-            remember('palpa-tablet', name);
+        if (!/^[0-9a-f]{8}$/.test(tablet)) {
+            tablet = hex(crypto.getRandomValues(new Uint8Array(4)));
+            remember('palpa-tablet', tablet);
         }
-        return name;
+        return tablet;
     };
     const asked_for = (key) => new URLSearchParams(location.search).get(key);
     const protocol = () => asked_for('protocol') === null ? '' : asked_for('protocol').replace(/\.json$/, '');

@@ -82,6 +82,25 @@ TEST_CASE("live: the tissue of a finished trial is changed while the keeper is b
     desk.show_frame();
 }
 
+TEST_CASE("live: nothing cuts the trial that a replay gives: not R, not another scene, profile or mode") {
+    Desk desk("");
+    desk.keeper.busy = false;
+    Wishes wishes;
+    wishes.again = wishes.next = true;
+    wishes.mode = TrialMode::test;
+    wishes.scene = PALPA_SOURCE_DIR "/assets/scenes/delay.json";
+    wishes.profile = PALPA_SOURCE_DIR "/assets/profiles/bamboo.json";
+    desk.app.trace = platform::read_trace(default_trace());
+    const int trials = desk.app.session.trials;
+    carry_out(wishes, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.session.trials == trials);
+    CHECK_FALSE(desk.app.session.scene.delay);
+    desk.app.trace.reset();
+    carry_out(wishes, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.session.trials > trials);
+    CHECK(desk.app.session.scene.delay.has_value());
+}
+
 TEST_CASE("live: the press that a trial ends with does not begin the next one") {
     Desk desk("");
     desk.keeper.busy = false;

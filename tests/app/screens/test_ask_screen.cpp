@@ -15,11 +15,15 @@ TEST_CASE("ask: everything that ends a trial waits for an answer, a mark of the 
         set(wishes);
         return wishes;
     };
-    const Wishes ending[] = {
-        wish([](Wishes& w) { w.again = true; }),        wish([](Wishes& w) { w.next = true; }),
-        wish([](Wishes& w) { w.quit = true; }),         wish([](Wishes& w) { w.scene = "delay.json"; }),
-        wish([](Wishes& w) { w.profile = ""; }),        wish([](Wishes& w) { w.mode = TrialMode::test; }),
-        wish([](Wishes& w) { w.above_finger = true; }), wish([](Wishes& w) { w.px_per_mm = kMissing; })};
+    const Wishes ending[] = {wish([](Wishes& w) { w.studies = true; }),
+                             wish([](Wishes& w) { w.again = true; }),
+                             wish([](Wishes& w) { w.next = true; }),
+                             wish([](Wishes& w) { w.quit = true; }),
+                             wish([](Wishes& w) { w.scene = "delay.json"; }),
+                             wish([](Wishes& w) { w.profile = ""; }),
+                             wish([](Wishes& w) { w.mode = TrialMode::test; }),
+                             wish([](Wishes& w) { w.above_finger = true; }),
+                             wish([](Wishes& w) { w.px_per_mm = kMissing; })};
     for (Wishes wishes : ending) {
         wishes.action = Action::mark;
         std::optional<Wishes> asked;
@@ -27,7 +31,7 @@ TEST_CASE("ask: everything that ends a trial waits for an answer, a mark of the 
         REQUIRE(asked);
         CHECK(now.action == Action::mark);
         const bool nothing_else = !now.again && !now.next && !now.quit && !now.scene && !now.profile && !now.mode &&
-                                  !now.above_finger && !now.px_per_mm;
+                                  !now.above_finger && !now.px_per_mm && !now.studies;
         CHECK(nothing_else);
         wishes = *asked;
         CHECK_FALSE(wishes.action);
