@@ -80,9 +80,10 @@ void take_recorded_options(TangibleRunArguments& arguments) {
     if (!fs::exists(report, error)) return;
     const files::Json root = files::read_json(report);
     files::JsonReader json(root, report.string());
+    if (!json.has("fidelity")) return;  // of another kind of run
     const std::string fidelity(
         tangible::kFidelityNames.at(json.choice("fidelity", {"step", "converged", "stale", "linear"})));
-    const double rate_Hz = json.number("rate_Hz", kRates_Hz);
+    const double rate_Hz = json.number("rate_Hz", kRates_Hz, tangible::LoopOptions{}.rate_Hz);
     if (arguments.fidelity.empty()) arguments.fidelity = fidelity;
     if (arguments.rate_Hz == 0.0) arguments.rate_Hz = rate_Hz;
     if (arguments.fidelity != fidelity || arguments.rate_Hz != rate_Hz)

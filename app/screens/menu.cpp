@@ -293,7 +293,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
         if (!shown.notices.keeps_trials) wishes.screen = Screen::tactile;
     }
     if (gui.pressed('g') && !shown.notices.keeps_trials) wishes.screen = Screen::tangible;
-    if (gui.pressed('y')) wishes.studies = true;
+    if (gui.pressed('y') && shown.notices.keeps_trials) wishes.studies = true;
     menu_keys(shown, gui, wishes);
     if (gui.pressed('e') && !parts) wishes.scene = parts_scene();  // there it would throw the edits away
     if (gui.pressed('x') && shown.scene.cues.side_view) wishes.side_view = !shown.settings.side_view;

@@ -86,6 +86,22 @@ TEST_CASE("keys: no arrow leads onto the frame of the screen's scale, which is d
     CHECK(desk.app.view.scale.card_px_per_mm == before);
 }
 
+TEST_CASE("keys: Y asks for the list of studies in the browser, and for nothing elsewhere") {
+    for (const bool browser : {false, true}) {
+        Desk desk("");
+        desk.app.notices.keeps_trials = browser;
+        live_frames(desk, 6);
+        tap(desk.window, SDLK_y);
+        bool asked = false;
+        std::vector<platform::Sample> samples;
+        for (int i = 0; i < 6; ++i) {
+            desk.window.poll(0.0, samples);
+            asked = desk.show_frame().studies || asked;
+        }
+        CHECK(asked == browser);
+    }
+}
+
 TEST_CASE("keys: a list of keys that does not fit scrolls") {
     Desk desk("");
     desk.app.view.help = true;
