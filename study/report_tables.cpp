@@ -225,8 +225,8 @@ std::string report_markdown(const Report& report) {
                    (report.people_without == 1 ? " has" : " have") + " logs, but no test in the tables.\n";
         }
         if (report.people_without_trial > 0)
-            out +=
-                "\n" + number_of(report.people_without_trial, "more participant") + " left before the first trial.\n";
+            out += "\n" + number_of(report.people_without_trial, "more participant") +
+                   (report.people_without_trial == 1 ? " has" : " have") + " no trial.\n";
     }
     out += plan_summary(report);
     out +=

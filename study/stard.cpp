@@ -93,7 +93,7 @@ std::string took_part(const Report& report) {
     std::string out = whole(began) + " took part, " + whole(report.participants) + " are analysed";
     if (report.people_without_trial > 0)
         out = whole(began + report.people_without_trial) + " agreed or gave their code, " +
-              whole(report.people_without_trial) + " of whom left before their first trial; " + out;
+              whole(report.people_without_trial) + " of whom have no trial; " + out;
     return out;
 }
 
