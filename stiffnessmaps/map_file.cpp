@@ -169,7 +169,7 @@ Map read_map(const fs::path& folder) {
     map.nodules_known = json.has("nodules");
     for (files::JsonReader& nodule : json.objects("nodules")) {
         const Nodule read = read_nodule(nodule);
-        const auto same = [&](const Nodule& other) { return other.id == read.id; };
+        const auto same = [&](const Nodule& other) { return other.id == read.id && other.placed == read.placed; };
         if (std::any_of(map.nodules.begin(), map.nodules.end(), same))
             nodule.fail("id", files::shown(read.id) + " twice", "an id of its own for each nodule");
         map.nodules.push_back(read);

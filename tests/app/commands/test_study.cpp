@@ -511,7 +511,7 @@ TEST_CASE("command study: a map whose nodules have names that tables cannot hold
         write_text_atomically(folder / "s.map/map.json",
                               other.replace(other.find(R"("A")"), 3, "\"" + std::string(name) + "\""));
         refused("simulate " + (folder / "p.json").string() + " --participants 1 -o " + (folder / "log").string(),
-                "s.json: nodules: found '");
+                name == std::string("B") ? "map.json: nodules[1].id: found 'B' twice" : "s.json: nodules: found '");
         CHECK_FALSE(fs::exists(folder / "log/study.json"));
     }
 }
@@ -530,7 +530,7 @@ TEST_CASE("command study: a map whose nodules the logs could not tell apart is r
         Json json = whole;
         json["nodules"][0]["id"] = id;
         write_text_atomically(map / "map.json", json_text(json));
-        refused(simulate, id == "B" ? "nodules: found 'B' twice" : "nodules: found '");
+        refused(simulate, id == "B" ? "nodules[1].id: found 'B' twice" : "nodules: found '");
         CHECK_FALSE(std::filesystem::exists(folder / "logs"));
     }
     write_text_atomically(map / "map.json", json_text(whole));
