@@ -86,6 +86,24 @@ void check_tactile_run(const TactileOptions& options) {
                                 ": found recorded rows beside a port, expected one of the two: rows drive no device");
 }
 
+// Recorded rows are only the input: the schedule of their run stands in the report beside them. A run that was killed, or
+// one of the app, has none; those of the app have the scene's.
+void take_recorded_schedule(TactileOptions& options) {
+    if (options.replay.empty() || !holds_rows(options.replay)) return;
+    const fs::path report = fs::path(options.replay).parent_path() / "performance.json";
+    std::error_code error;
+    if (!fs::exists(report, error)) return;
+    const files::Json root = files::read_json(report);
+    files::JsonReader json(root, report.string());
+    if (!json.has("schedule") || root.at("schedule").is_null()) return;  // without pins, or of another kind of run
+    const scene::PinSchedule recorded =
+        static_cast<scene::PinSchedule>(json.choice("schedule", {"free", "lead", "locked"}));
+    if (options.schedule.empty()) options.schedule = name_of(recorded);
+    if (options.schedule != name_of(recorded))
+        std::fprintf(stderr, "palpa: warning: the run had --schedule %s; the pins are told other heights\n",
+                     name_of(recorded));
+}
+
 std::shared_ptr<tactile::TactilePlan> prepare_tactile(const TactileOptions& options, const scene::Scene& scene,
                                                       const scene::Plan& scene_plan) {
     auto plan = std::make_shared<tactile::TactilePlan>(tactile::make_tactile_plan(scene, scene_plan));
@@ -165,8 +183,9 @@ void print_tactile(const files::Json& result) {
     }
 }
 
-void run_tactile(const TactileOptions& options) {
+void run_tactile(TactileOptions options) {
     check_tactile_run(options);
+    take_recorded_schedule(options);
     const scene::Scene scene = load_scene(options.scene);
     if (!options.log.empty()) {
         files::check_output_folder(options.log);

@@ -135,6 +135,24 @@ TEST_CASE("tactile run: where the arm leads, its recorded rows give the same log
     }
 }
 
+TEST_CASE("tactile run: a replay takes the schedule of its run, or warns of another") {
+    const SlabFolder slab(R"({"arm": {"device": "arm.json"}, "display": {"device": "pins-6x6.json"}, "leads": "arm"})");
+    REQUIRE(slab.run("--virtual-time --schedule free --log " + slab.path("run")).status == 0);
+    const auto replay = [&](const std::string& more) {
+        return palpa_with(
+            "tactile run " + slab.path("s.json") + " --replay " + slab.path("run/press.tactile.tsv") + more,
+            "XDG_CACHE_HOME=" + slab.path("cache"));
+    };
+    const Called same = replay(" --json --log " + slab.path("same"));
+    CHECK(result_of(same)["schedule"] == "free");
+    CHECK(files::read_text(slab.folder / "run/pins.tsv") == files::read_text(slab.folder / "same/pins.tsv"));
+    CHECK_FALSE(contains(same.err, "--schedule"));
+    const Called other = replay(" --schedule lead --log " + slab.path("other"));
+    CHECK(other.status == 0);
+    CHECK(contains(other.err, "the run had --schedule free; the pins are told other heights"));
+    CHECK(files::read_text(slab.folder / "run/pins.tsv") != files::read_text(slab.folder / "other/pins.tsv"));
+}
+
 TEST_CASE("tactile run: every pairing that cannot show the tissue is refused with its reason") {
     check_refused(R"({"finger": {"contact": "rigid"}, "display": {}})", "the shape would be the finger's own");
     check_refused(R"({"display": {"kind": "pressure"}})", "the pressure would be the finger's own");
