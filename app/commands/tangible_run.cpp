@@ -211,7 +211,8 @@ void note_missed(const tangible::LoopOptions& loop, files::Json& json) {
                                                                                   : "--fidelity stale or linear, or ";
     const std::string note = std::to_string(missed) + " of " + std::to_string(ticks + missed) +
                              " ticks were missed: a tick takes " +
-                             files::short_number(1e-3 * json["tick_us"]["p50"].get<double>()) + " ms here (median; " +
+                             files::short_number(1e-3 * json["tick_us"]["p50"].get<double>()) +
+                             " ms here (median of all, with those at rest; " +
                              files::short_number(1e-3 * json["tick_us"]["p99"].get<double>()) +
                              " ms in one of a hundred), and the period is " + files::short_number(1e3 / loop.rate_Hz) +
                              " ms; " + less + "a lower --rate-Hz takes less";

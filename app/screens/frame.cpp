@@ -60,31 +60,33 @@ bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes
     return true;
 }
 
+// What is pressed: tissue with what lies on it, or parts.
+void draw_pressed(const Shown& shown, Gui& gui, ViewState& view) {
+    if (shows_parts(shown)) return draw_parts(shown, gui, view.part);
+    draw_on_tissue(shown, gui);
+}
+
 void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     if (shown.asked) {
-        draw_on_tissue(shown, gui);
+        draw_pressed(shown, gui, view);
         return draw_ask(shown, gui, wishes);
     }
     const bool listed_keys = view.help;
     take_keys(shown, gui, view, wishes);
     if (listed_keys || view.help) {  // the key that closes the list does nothing else
-        draw_on_tissue(shown, gui);
+        draw_pressed(shown, gui, view);
         return draw_help(shown, gui, view);
     }
     if (draw_covering(shown, gui, view, wishes)) return;
     if (const auto* reviewing = std::get_if<Reviewing>(&shown.doing)) {
         draw_reveal_on_tissue(shown, gui, reviewing->debrief);
         draw_reveal_panel(shown, layout, *reviewing, gui, wishes);
-    } else if (shows_parts(shown)) {
-        draw_parts(shown, gui, view.part);
-        if (study_of(shown.doing) != nullptr) {
-            draw_trial_panel(shown, layout, gui, view, wishes);
-        } else {
-            draw_part_panel(shown, layout, gui, view, wishes);
-        }
     } else {
-        draw_on_tissue(shown, gui);
-        draw_trial_panel(shown, layout, gui, view, wishes);
+        draw_pressed(shown, gui, view);
+        if (shows_parts(shown) && study_of(shown.doing) == nullptr)
+            draw_part_panel(shown, layout, gui, view, wishes);
+        else
+            draw_trial_panel(shown, layout, gui, view, wishes);
     }
     const bool paused = shown.trial.paused_at_s && !shown.trial.finished && study_of(shown.doing) == nullptr;
     if (paused)

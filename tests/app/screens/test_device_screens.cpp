@@ -318,10 +318,15 @@ TEST_CASE("screens: parts fit at the sizes of desks and tablets: pressed, change
     changed.view.part.stroke_m = {{0.14, 0.03}, {0.142, 0.031}};
     changed.view.part.pending = 0.4;
     changed.view.part.edits = {2, 0};
+    Screens keys;
+    keys.view = pressed.view;
+    keys.view.help = true;
     for (const Case& c :
          {Case{1280, 800, kMissing, false}, Case{800, 1280, kMissing, false}, Case{2560, 1600, 11.8, true},
           Case{1024, 600, kMissing, true}, Case{1280, 800, kMissing, false, false, 140}}) {
         OffScreen screen = screen_of(c);
+        check_case(session, keys, c, "parts-keys", screen);
+        CHECK(screen.pixels()[0] < 10);  // behind the list is the dark of parts, where a tissue's is 12
         check_case(session, pressed, c, "parts", screen);
         check_case(session, changed, c, "parts-changed", screen);
         check_case(button, pressed, c, "parts-button", screen);
