@@ -104,15 +104,12 @@ void take_recorded_schedule(TactileOptions& options) {
                      name_of(recorded));
 }
 
-std::shared_ptr<tactile::TactilePlan> prepare_tactile(const TactileOptions& options, const scene::Scene& scene,
-                                                      const scene::Plan& scene_plan) {
-    auto plan = std::make_shared<tactile::TactilePlan>(tactile::make_tactile_plan(scene, scene_plan));
-    if (!options.schedule.empty()) {
-        if (!plan->pins) throw files::InputError("--schedule: found for a scene without a shape display, expected one");
-        plan->options.display->schedule = schedule_of(options.schedule);
-    }
-    take_ports(options, *plan);
-    return plan;
+// The plan's notes are about the schedule, so it must be known before.
+void take_schedule(const TactileOptions& options, scene::Scene& scene) {
+    if (options.schedule.empty()) return;
+    if (!scene.tactile->display || scene.tactile->display->kind != scene::DisplayKind::shape)
+        throw files::InputError("--schedule: found for a scene without a shape display, expected one");
+    scene.tactile->display->schedule = schedule_of(options.schedule);
 }
 
 // Where there is no tissue, nothing pushes back.
@@ -186,15 +183,17 @@ void print_tactile(const files::Json& result) {
 void run_tactile(TactileOptions options) {
     check_tactile_run(options);
     take_recorded_schedule(options);
-    const scene::Scene scene = load_scene(options.scene);
+    scene::Scene scene = load_scene(options.scene);
     if (!options.log.empty()) {
         files::check_output_folder(options.log);
         for (const char* file : {"steps.tsv", "performance.json"}) files::check_new(fs::path(options.log) / file);
     }
     if (!scene.tactile)
         throw files::bad_input(options.scene, "tactile", "no such key", "one that says which arm or display there is");
+    take_schedule(options, scene);
     const scene::Plan scene_plan = session::make_plan_here(scene);
-    const auto plan = prepare_tactile(options, scene, scene_plan);
+    const auto plan = std::make_shared<tactile::TactilePlan>(tactile::make_tactile_plan(scene, scene_plan));
+    take_ports(options, *plan);
     files::Json devices = files::Json::array();
     const session::TactileResult result = run_as_asked(options, scene_plan.area, plan, devices);
     files::Json json{{"scene", scene.name}, {"seed", options.seed}};

@@ -97,6 +97,19 @@ TEST_CASE("tactile run: the shipped scene and press: the force holds at its limi
     CHECK(rms_mm[1] <= 0.5 * rms_mm[0]);
 }
 
+TEST_CASE("tactile run: the note on the pins' stroke is of the schedule that is asked for") {
+    const TemporaryFolder folder;
+    const auto notes = [&](const std::string& schedule) {
+        const files::Json json = result_of(palpa_with("tactile run " + (kAssets / "scenes/tactile.json").string() +
+                                                          " --replay " + (kAssets / "traces/press.tsv").string() +
+                                                          " --virtual-time --json --schedule " + schedule,
+                                                      "XDG_CACHE_HOME=" + folder.path().string()));
+        return json["notes"].dump();
+    };
+    CHECK(contains(notes("lead"), "the pins' stroke is used up at "));
+    CHECK_FALSE(contains(notes("locked"), "stroke"));
+}
+
 TEST_CASE("tactile run: live with simulators it writes the bytes of virtual time, where the touch leads") {
     const SlabFolder slab;
     const files::Json live = result_of(slab.run("--simulate --json --log " + slab.path("live")));
