@@ -246,8 +246,8 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
     const std::string text = frame_text(shown);
-    const ImVec2 text_size = ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x);
-    const float text_px = text_size.y + 2.0f * ImGui::GetStyle().ItemSpacing.y;
+    const std::string lines = broken_at_spaces(text, ImGui::GetContentRegionAvail().x);
+    const float text_px = ImGui::CalcTextSize(lines.c_str()).y + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     if (ImGui::BeginTable("stages", 5, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
         ImGui::TableSetupScrollFreeze(0, 1);
         constexpr const char* kColumns[] = {words::kStage, words::kError, words::kMicroseconds, words::kMicroseconds99,

@@ -162,8 +162,10 @@ void hint_for_last(const char* text) {
     ImGui::EndTooltip();
 }
 
-// Dear ImGui breaks lines behind points and commas too, and so within a number.
+// Dear ImGui breaks lines behind points and commas too, and so within a number. It has up to a pixel less than the width,
+// since it works with whole ones: what it broke again would need a line that no panel has reckoned with.
 std::string broken_at_spaces(const std::string& text, float width_px) {
+    width_px -= 1.0f;
     const ImFont& font = *ImGui::GetFont();
     const auto width_of = [&](const char* from, const char* to) {
         return font.CalcTextSizeA(ImGui::GetFontSize(), FLT_MAX, 0.0f, from, to).x;

@@ -41,10 +41,12 @@ const char* kept_pictures() { return ::getenv("PALPA_KEEP_PICTURES"); }
 
 Pixels draw(const Session& session, const Settings& settings, const Screens& screens, OffScreen& screen, State& state) {
     ViewState view = screens.view;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 4; ++i) {
         screen.draw({session.scene, *session.plan, session.trial, settings, screens.notices, screens.doing,
                      screens.asked, state.timeline.now_s, 1.0 / 60.0, screens.tactile, screens.tangible},
                     view, state);
+        // a panel whose lines change with its scroll bar flickers: it overflows in every other frame
+        if (i > 1) CHECK(screen.gui().overflow() == "");
     }
     return {screen.window().width_px(), screen.window().height_px(), screen.pixels()};
 }
@@ -76,7 +78,6 @@ void check_case(const Session& session, Screens& screens, const Case& c, const s
     resize.height_px = static_cast<double>(t.height());
     advance(session.scene, *session.plan, resize, state);
     const Pixels picture = draw(session, settings, screens, screen, state);
-    CHECK(screen.gui().overflow() == "");
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
