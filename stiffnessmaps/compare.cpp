@@ -40,9 +40,11 @@ Range shared(const Map& grid, const Map& other, int axis) {
     return out;
 }
 
+constexpr double kSame = 1e-6;  // depths of one layer, written and read again, may differ by rounding
+
 double force_or_nan(const Field& field, const Eigen::Vector2d& p_m, double depth_m) {
     const Place place = place_at(field, p_m);
-    const bool known = place.inside && place.measured && depth_m <= greatest_depth_m(field, place) * (1.0 + 1e-9);
+    const bool known = place.inside && place.measured && depth_m <= greatest_depth_m(field, place) * (1.0 + kSame);
     return known ? normal_force_N(field, place, depth_m) : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -104,7 +106,7 @@ MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b
         throw files::bad_input(name_b, "", "a map of " + span_text(b),
                                "one that overlaps " + name_a + ", " + span_text(a));
     }
-    const double deepest_m = std::min(a.depths_m.back(), b.depths_m.back()) * (1.0 + 1e-9);
+    const double deepest_m = std::min(a.depths_m.back(), b.depths_m.back()) * (1.0 + kSame);
     const auto depths_of = [&](const Map& map) {
         std::vector<double> out;
         std::copy_if(map.depths_m.begin(), map.depths_m.end(), std::back_inserter(out),

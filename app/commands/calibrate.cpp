@@ -113,6 +113,9 @@ void fit(const FitArguments& arguments) {
     const calibration::CalibrateOptions options = fit_options(arguments);
     const calibration::CalibrationRows rows =
         calibration::read_points(arguments.data, {parse_where(arguments.where), arguments.any_force});
+    if (arguments.keep_lag && rows.time_s.empty())
+        throw files::bad_input("--keep-lag", "", "no column time_s in " + rows.file,
+                               "one: a lag is only found by times");
     if (options.range) {
         const double highest = *std::max_element(rows.level.begin(), rows.level.end());
         if (highest > options.range->highest) {
@@ -187,6 +190,7 @@ void add_fit(CLI::App& calibrate) {
     command->add_option("--date", arguments->device.date, "date of the recording in the profile");
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([command, arguments] {
+        refuse_unused(*command, "--seed", arguments->options.bootstrap_fits > 0, "--bootstrap above 0");
         refuse_unused(*command, "--full-contact-area-px2", arguments->level == "contact_area", "--level contact_area");
         fit(*arguments);
     });

@@ -34,9 +34,9 @@ struct TactileOptions {
     std::string replay;
     std::string schedule;
     std::string log;
-    std::string arm;   // HOST:PORT
-    std::string pins;  // path of a serial port
-    std::uint64_t seed = 1;
+    std::string arm;                    // HOST:PORT
+    std::string pins;                   // path of a serial port
+    std::optional<std::uint64_t> seed;  // nothing: 1
     bool headless = false;
     bool simulate = false;
     bool virtual_time = false;
@@ -52,6 +52,11 @@ scene::PinSchedule schedule_of(const std::string& name) {
 
 // A table whose first column is `row` holds recorded rows of a loop, any other a press.
 bool holds_rows(const fs::path& file) { return files::read_tsv(file).columns().front() == "row"; }
+
+// Recorded rows are run without devices.
+bool is_simulated(const TactileOptions& options) {
+    return (options.simulate || options.virtual_time) && !holds_rows(options.replay);
+}
 
 void take_ports(const TactileOptions& options, tactile::TactilePlan& plan) {
     if (!options.pins.empty()) {
@@ -75,6 +80,8 @@ void check_tactile_run(const TactileOptions& options) {
         throw files::InputError(
             "found no --replay PRESS.tsv, expected a press or recorded rows (the "
             "app's screen of arm and pins, key T, is for presses by hand)");
+    if (options.seed && !is_simulated(options))
+        throw files::InputError("--seed: found without simulators, expected --simulate or --virtual-time, and a press");
     if (options.arm.empty() && options.pins.empty()) return;
     if (options.virtual_time)
         throw files::InputError(
@@ -132,7 +139,7 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
                                     const std::shared_ptr<tactile::TactilePlan>& plan, files::Json& devices) {
     session::TactileRunOptions run;
     run.log = options.log;
-    run.seed = options.seed;
+    run.seed = options.seed.value_or(1);
     const bool rows = holds_rows(options.replay);
     if (!rows) {
         run.press = devices::read_press(options.replay);
@@ -148,7 +155,7 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
     if (!options.log.empty()) fs::create_directories(options.log);
     std::unique_ptr<tactile::Simulators> simulators;
     if (!rows && options.simulate && !options.virtual_time)
-        simulators = tactile::start_simulators(options.replay, options.seed, *plan);
+        simulators = tactile::start_simulators(options.replay, run.seed, *plan);
     if (rows) return session::replay_rows(plan, recorded, run);  // no device takes part
     for (const session::TactileDevice& device : session::devices_of(*plan, options.simulate || options.virtual_time)) {
         devices.push_back({{"role", device.role},
@@ -196,7 +203,8 @@ void run_tactile(TactileOptions options) {
     take_ports(options, *plan);
     files::Json devices = files::Json::array();
     const session::TactileResult result = run_as_asked(options, scene_plan.area, plan, devices);
-    files::Json json{{"scene", scene.name}, {"seed", options.seed}};
+    files::Json json{{"scene", scene.name}, {"seed", nullptr}};
+    if (is_simulated(options)) json["seed"] = options.seed.value_or(1);
     json.update(tactile::figures_json(*plan, result.steps, result.mismatch, result.devices));
     json["devices"] = devices;
     if (holds_rows(options.replay)) json["replay"] = options.replay;

@@ -41,7 +41,8 @@ void take_link(const tactile::ArmRig& rig, RigResult& result) {
 }  // namespace
 
 void add_rig_options(CLI::App& command, RigOptions& options) {
-    command.add_option("--device", options.device, "device file of the arm (default: that of the scene)");
+    command.add_option("--device", options.device,
+                       "device file of the arm (default: that of the scene, if one is given)");
     command.add_flag("--simulate", options.simulate, "start a simulated arm with hand and force sensor");
     command.add_flag("--virtual-time", options.virtual_time,
                      "with --simulate: in this process, without waiting, and so the same at every run");

@@ -44,7 +44,7 @@ struct TangibleRunArguments {
     std::string command;
     double rate_Hz = 0.0;  // 0: 100, or that of the run that is replayed
     double seconds = 0.0;
-    std::uint64_t seed = 1;
+    std::optional<std::uint64_t> seed;  // of a plant; nothing: 1
     bool headless = false;
     bool json = false;
 };
@@ -63,7 +63,7 @@ void check_replay(const TangibleRunArguments& arguments) {
     for (const auto& [option, given] :
          {std::pair{"--plant", !arguments.plant.empty()}, std::pair{"--port", !arguments.ports.empty()},
           std::pair{"--press", !arguments.press.empty()}, std::pair{"--seconds", arguments.seconds > 0.0},
-          std::pair{"--headless", arguments.headless}}) {
+          std::pair{"--seed", arguments.seed.has_value()}, std::pair{"--headless", arguments.headless}}) {
         if (given)
             throw files::InputError(std::string(option) +
                                     ": found beside --replay, expected one of the two: recorded rows are run as they "
@@ -101,6 +101,9 @@ std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& 
     if (plant.empty() && arguments.headless)
         throw files::InputError(
             "--headless: found without a plant, expected --plant exact or a file: real devices need real time");
+    if (plant.empty() && arguments.seed)
+        throw files::InputError(
+            "--seed: found without a plant, expected --plant exact or a file: it is of the plant's noise");
     if (plant.empty() && !arguments.press.empty())
         throw files::InputError(
             "--press: found without a plant, expected --plant exact or a file: on a real device a finger presses");
@@ -122,7 +125,7 @@ session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, cons
                                      const std::shared_ptr<const tangible::TangiblePlan>& plan) {
     session::TangibleRunOptions run;
     run.log = arguments.log;
-    run.seed = arguments.seed;
+    run.seed = arguments.seed.value_or(1);
     if (!arguments.replay.empty()) {
         const auto rows =
             session::read_device_rows(arguments.replay, session::field_names<tangible::TangibleFeedback>());
@@ -269,8 +272,11 @@ void run_tangible(TangibleRunArguments arguments) {
     }
     const bool by_force = !press.empty() && std::isfinite(press.front().force_N);
     const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
-    files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
-    json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
+    files::Json json{{"scene", scene.name}, {"seed", nullptr}, {"plant", nullptr}};
+    if (!plant_name.empty()) {
+        json["seed"] = arguments.seed.value_or(1);
+        json["plant"] = plant_name;
+    }
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     if (!plant_name.empty() && arguments.press.empty()) note_less_depth(finger_of(arguments, {}, *plan), json);
     json["devices"] = files::Json::array();

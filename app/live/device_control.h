@@ -70,7 +70,14 @@ void rest(Control& control) {
     control.fault_since_s.reset();
     if (!control.shown) return;
     control.shown->runs = control.shown->opening = false;
-    if (!control.shown->moment.stopped) control.shown->moment.fault = "";
+    // what the last moment showed of force and shape is over; a stop is not
+    auto& moment = control.shown->moment;
+    const bool stopped = moment.stopped;
+    const char* fault = stopped ? moment.fault : "";
+    moment = {};
+    moment.stopped = stopped;
+    moment.fault = fault;
+    if constexpr (requires { control.shown->has_shape; }) control.shown->has_shape = false;
 }
 
 // Gives the loop the touch, and takes over its latest moment. Returns true if there is a new one.

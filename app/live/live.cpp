@@ -198,6 +198,16 @@ void remember_window(const platform::Window& window, App& app) {
     keep_settings(app);
 }
 
+// The letters of a study, or of names that people have given to scenes and profiles.
+std::string letters_to_show(const App& app) {
+    if (const StudyRun* run = study_of(app.doing)) return letters_of(run->protocol);
+    std::string letters = app.unprepared ? app.unprepared->name : app.session.scene.name;
+    for (const auto* choices : {&app.notices.scenes, &app.notices.profiles}) {
+        for (const Choice& one : *choices) letters += one.name;
+    }
+    return letters;
+}
+
 }  // namespace
 
 struct Live::Impl {
@@ -214,7 +224,7 @@ struct Live::Impl {
         if (app.settings.full_screen && !app.trace) window->set_full_screen(true);
         know_screen(*window, app);
         gui.emplace(*window);
-        if (const StudyRun* run = study_of(app.doing)) gui->add_letters(letters_of(run->protocol));
+        gui->add_letters(letters_to_show(app));
         set_scale(*window, app, *gui);
         ready = prepare_chosen(*window, *gui, app);
         if (!ready) return;

@@ -145,7 +145,8 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
     if (result) {
         const bool menu = menu_of(shown.doing) != nullptr && *menu_of(shown.doing);
         const bool by_key =
-            (gui.pressed(platform::key::enter) && !gui.shows_focus()) || gui.pressed(platform::key::escape);
+            (gui.pressed(platform::key::enter) && !gui.shows_focus()) ||
+            (gui.pressed(platform::key::escape) && shown.notices.problems.empty());  // which it dismisses first
         if (big_button(words::kStartPractice, words::kEnter, {60.0f * gui.mm(), kTarget_mm, true, true}, gui) ||
             (by_key && !menu))
             wishes.guided = false;
@@ -153,7 +154,7 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
         if (big_button(words::kRepeatGuided, "", {44.0f * gui.mm(), kTarget_mm, true, false}, gui))
             wishes.guided = true;
     } else if (big_button(words::kSkip, words::kEscape, {34.0f * gui.mm(), kTarget_mm, true, false}, gui) ||
-               (gui.pressed(platform::key::escape) && !*menu_of(shown.doing))) {
+               (gui.pressed(platform::key::escape) && !*menu_of(shown.doing) && shown.notices.problems.empty())) {
         wishes.guided = false;
     }
     end_panel("guided", gui);

@@ -276,7 +276,6 @@ void age_note(double now_s, Notices& notices) {
 void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {
     if (gui.pressed('q', true) && !shown.notices.keeps_trials) wishes.quit = true;
     if (gui.pressed(platform::key::f11)) wishes.full_screen = true;
-    if (gui.pressed(platform::key::escape)) wishes.understood = true;
     const bool help = gui.pressed(platform::key::f1) || gui.pressed('?') || gui.pressed('/');
     if (view.help) {  // the keys only act on what can be seen
         if (help || gui.pressed(platform::key::escape)) view.help = false;

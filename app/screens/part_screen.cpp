@@ -296,9 +296,7 @@ void draw_kept(const PartView& view) {
 }
 
 void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, Wishes& wishes) {
-    for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
-    if (!shown.notices.problems.empty() && big_button(words::kDismiss, words::kEscape, {}, gui))
-        wishes.understood = true;
+    draw_problems(shown, gui, wishes);
     if (view.pending) paragraph(words::filled(words::kCellsPending, {fixed(100.0 * *view.pending, 0)}));
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
     draw_kept(view);

@@ -20,7 +20,9 @@ void draw_path(const Shown& shown, float mm, ImDrawList& draw) {
     }
 }
 
-void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm, ImDrawList& draw) {
+// Returns the areas of the names.
+std::vector<PanelArea> draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm, ImDrawList& draw) {
+    std::vector<PanelArea> names;
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         const stiffnessmaps::Nodule& nodule = shown.plan.nodules[i];
         const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
@@ -31,14 +33,14 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
         const std::string text = nodule.id + ": " + name_of(debrief.findings[i]);
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
-        plated_text(
-            draw,
-            ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
-            kInk, text);
+        const float left_px = fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px;
+        names.push_back(plated_text(draw, ImVec2(left_px, at.y + 0.3f * ImGui::GetFontSize()), kInk, text));
     }
+    return names;
 }
 
-void draw_marks(const Shown& shown, const session::Debrief& debrief, float mm, ImDrawList& draw) {
+void draw_marks(const Shown& shown, const session::Debrief& debrief, const std::vector<PanelArea>& names, float mm,
+                ImDrawList& draw) {
     std::vector<Label> labels;
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
         const session::Mark& mark = shown.trial.marks[i];
@@ -58,7 +60,7 @@ void draw_marks(const Shown& shown, const session::Debrief& debrief, float mm, I
         if (mark.confidence > 0) word += words::filled(words::kConfidenceOf, {std::to_string(mark.confidence)});
         labels.push_back({at, word});
     }
-    place_labels(labels, mm, draw);
+    place_labels(labels, names, mm, draw);
 }
 
 // A little is not nothing, and nearly all not all.
@@ -148,8 +150,8 @@ void buttons(const Gui& gui, bool menu, Wishes& wishes) {
         wishes.menu = !menu;
 }
 
-void messages(const Shown& shown) {
-    for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
+void messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    draw_problems(shown, gui, wishes);
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
     if (!shown.notices.trials_note.empty()) paragraph(shown.notices.trials_note);
 }
@@ -160,8 +162,7 @@ void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::De
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     draw_coverage(shown.view, shown.trial.coverage, gui.mm(), draw);
     draw_path(shown, gui.mm(), draw);
-    draw_nodules(shown, debrief, gui.mm(), draw);
-    draw_marks(shown, debrief, gui.mm(), draw);
+    draw_marks(shown, debrief, draw_nodules(shown, debrief, gui.mm(), draw), gui.mm(), draw);
 }
 
 void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing& reviewing, Gui& gui, Wishes& wishes) {
@@ -175,7 +176,7 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
         legend(reviewing.debrief, gui);
         const bool fits = ImGui::GetCursorPosY() <= ImGui::GetWindowHeight() + 1.0f;
         if (!fits) gui.note_overflow("result");
-        messages(shown);
+        messages(shown, gui, wishes);
         ImGui::PopStyleVar();
         ImGui::EndChild();
     } else {
@@ -186,7 +187,7 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
         ImGui::BeginChild("legend", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
         buttons(gui, reviewing.menu, wishes);
         legend(reviewing.debrief, gui);
-        messages(shown);
+        messages(shown, gui, wishes);
         ImGui::EndChild();
     }
     end_panel("reveal", gui);

@@ -181,6 +181,8 @@ struct Shown : ToShow {
 void draw_on_tissue(const Shown& shown, const Gui& gui);
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);
+// Draws what went wrong, in a panel, and dismisses it: with Escape only where it is seen and no menu is closed by that.
+void draw_problems(const Shown& shown, const Gui& gui, Wishes& wishes);
 // Where the guided start stands; it follows from the trial alone.
 enum class GuidedStep : std::uint8_t { press, slide, mark, confidence, finish };
 GuidedStep guided_step(const scene::Plan& plan, const session::Trial& trial);

@@ -150,8 +150,7 @@ void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
 
 void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const Notices& notices = shown.notices;
-    for (const std::string& problem : notices.problems) warning_paragraph(problem);
-    if (!notices.problems.empty() && big_button(words::kDismiss, words::kEscape, {}, gui)) wishes.understood = true;
+    draw_problems(shown, gui, wishes);
     if (shown.state.without_level) {
         warning_paragraph(words::filled(words::kWithoutLevel,
                                         {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
@@ -289,13 +288,15 @@ const char* contact_note(const scene::Contact& contact, bool experimenter) {
 void draw_on_tissue(const Shown& shown, const Gui& gui) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     if (hides_tissue(shown)) return draw_cover(shown, gui, draw);
+    std::vector<PanelArea> names;
     if (shown.trial.mode == session::TrialMode::practice) {
         for (const stiffnessmaps::Nodule& nodule : shown.plan.nodules) {
             const ImVec2 at = on_surface(shown.picture, nodule.x_m, nodule.y_m);
             const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
             ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m,
                             {0.45f * gui.mm(), 0.5f * gui.mm()});
-            plated_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id);
+            names.push_back(
+                plated_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id));
         }
     }
     std::vector<Label> labels;
@@ -307,10 +308,22 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
         labels.push_back({at, std::to_string(i + 1) + sure});
     }
-    place_labels(labels, gui.mm(), draw);
+    place_labels(labels, names, gui.mm(), draw);
     draw_pen(shown, gui, draw);
     draw_side_view(shown, gui);
     draw_pins_inset(shown, gui);
+}
+
+void draw_problems(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    const Notices& notices = shown.notices;
+    for (const std::string& problem : notices.problems) warning_paragraph(problem);
+    if (notices.problems.empty()) {
+        if (notices.trial_stopped) warning_paragraph(words::kTrialStopped);
+        return;
+    }
+    const bool* menu = menu_of(shown.doing);
+    const bool by_key = gui.pressed(platform::key::escape) && !(menu != nullptr && *menu);
+    if (big_button(words::kDismiss, words::kEscape, {}, gui) || by_key) wishes.understood = true;
 }
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {

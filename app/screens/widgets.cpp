@@ -298,20 +298,21 @@ void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, f
     }
 }
 
-void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px) {
+PanelArea plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap_px);
     const float margin_px = 0.2f * ImGui::GetFontSize();
     draw.AddRectFilled(ImVec2(at.x - margin_px, at.y - 0.4f * margin_px),
                        ImVec2(at.x + size.x + margin_px, at.y + size.y + 0.4f * margin_px), IM_COL32(20, 22, 24, 205),
                        margin_px);
     draw.AddText(nullptr, 0.0f, at, colour, text.c_str(), nullptr, std::max(wrap_px, 0.0f));
+    return {at.x, at.y, at.x + size.x, at.y + size.y};
 }
 
-void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) {
+std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float mm) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    std::vector<PanelArea> taken;
     for (const Label& label : labels)
         taken.push_back({label.at.x - mm, label.at.y - mm, label.at.x + mm, label.at.y + mm});
+    std::vector<PanelArea> out;
     for (const Label& label : labels) {
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
         const float off_px = 2.4f * mm;
@@ -326,8 +327,15 @@ void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) 
             if (free && area.x0 >= 0.0f && area.x1 <= screen.x && area.y0 >= 0.0f) break;
         }
         taken.push_back(area);
-        plated_text(draw, ImVec2(area.x0, area.y0), kInk, label.text);
+        out.push_back(area);
     }
+    return out;
+}
+
+void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float mm, ImDrawList& draw) {
+    const std::vector<PanelArea> areas = label_areas(labels, taken, mm);
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        plated_text(draw, ImVec2(areas[i].x0, areas[i].y0), kInk, labels[i].text);
 }
 
 void draw_too_small() {

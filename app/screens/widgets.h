@@ -102,13 +102,16 @@ void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, con
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 // Draws text on a dark plate, so that it can be read on any tissue; in lines of wrap_px at most if that is > 0.
-void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px = -1.0f);
+// Returns the text's area.
+PanelArea plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text, float wrap_px = -1.0f);
 struct Label {
     ImVec2 at;  // of its mark
     std::string text;
 };
-// Draws each label beside its mark, at the first of eight places where it covers no other and stays in the window.
-void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw);
+// Returns where each label goes beside its mark: the first of eight places where it covers no mark, no other label and
+// nothing that is `taken`, and stays in the window.
+std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float mm);
+void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float mm, ImDrawList& draw);
 // Says that the window has no room for controls.
 void draw_too_small();
 

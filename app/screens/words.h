@@ -87,6 +87,8 @@ inline constexpr const char* kSure = "sure";
 inline constexpr const char* kUndo = "Undo";
 inline constexpr const char* kFinish = "Finish";
 inline constexpr const char* kDismiss = "Dismiss";
+inline constexpr const char* kTrialStopped =
+    "No trial is running: the last one could not begin, or be written to its end. Restart trial (R) begins another.";
 inline constexpr const char* kPressByHolding = "Press by holding";
 inline constexpr const char* kAnalyticTissue = "Tissue: closed-form model, not a recording";
 inline constexpr const char* kSimulatedTissue = "Tissue: simulated, not a recording";

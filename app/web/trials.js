@@ -262,6 +262,7 @@ const palpaTrials = (() => {
             older.files = older.files.filter((old) => !files.some(({path}) => path === old.path));
         }
         unsaved.delete(trial.name);
+        if (onlyInFile().includes(trial.name)) rememberNames('palpa-exported', onlyInFile().filter((name) => name !== trial.name));
         carry();
         solve(trial.name, '');
         note(trial);
@@ -445,6 +446,7 @@ const palpaTrials = (() => {
             download(`palpa-trials${title}-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files: [...files.values()]}, null, 1) + '\n');
         }
         for (const {trial} of unsaved.values()) trial.exported = true;
+        rememberNames('palpa-exported', [...onlyInFile(), ...unsaved.keys()]);
         carry();
         solve(...unsaved.keys());
         for (const trial of kept.filter(isOver)) {
@@ -456,6 +458,8 @@ const palpaTrials = (() => {
 
     const codeOf = (name) => (/^sub-([0-9A-Za-z]+)_task-(?!answers_)/.exec(name) || ['', ''])[1]; // of who did a trial
     const deleted = () => recall('palpa-deleted').split(' '); // codes of participants, also of earlier pages
+    const onlyInFile = () => recall('palpa-exported').split(' '); // names of trials for which there was no room, also of earlier pages
+    const rememberNames = (key, names) => remember(key, [...new Set(names)].join(' '));
 
     // What is at the desk takes no room, and its name counts there.
     const removeExported = async () => {
@@ -463,7 +467,7 @@ const palpaTrials = (() => {
             if (!exported || sent) continue;
             await request('readwrite', (store) => store.delete(name));
             trials.delete(name);
-            remember('palpa-deleted', [...new Set([...deleted(), codeOf(name)])].join(' '));
+            rememberNames('palpa-deleted', [...deleted(), codeOf(name)]);
         }
         noteNames();
         await saveAgain(); // there may be room now
@@ -483,7 +487,7 @@ const palpaTrials = (() => {
         const all = known().filter((t) => codeOf(t.name) === code && isOver(t));
         const sent = all.some((t) => t.sent);
         const here = all.some((t) => !t.sent && !unsaved.has(t.name));
-        const exported = deleted().includes(code) || all.some((t) => !t.sent && unsaved.has(t.name)); // and nowhere else
+        const exported = deleted().includes(code) || onlyInFile().some((name) => codeOf(name) === code) || all.some((t) => !t.sent && unsaved.has(t.name)); // and nowhere else
         if (here) return sent || exported ? palpaWords.someAreHere : palpaWords.theyAreHere;
         return exported ? palpaWords.noneIsHere : sent ? palpaWords.theyAreAtDesk : '';
     };

@@ -76,6 +76,13 @@ TEST_CASE("compare: on the coarser grid, the common area and the common depths")
     }
 }
 
+TEST_CASE("compare: the deepest layer counts where its depth differs by rounding, in both orders") {
+    const Map a = map_of(12, 10, {1e-3, 2.9937299e-3}, plane);
+    const Map b = map_of(12, 10, {1e-3, 2.99373e-3}, plane);
+    CHECK(compare_maps(a, "a", b, "b").all.n == 2 * a.n_cells());
+    CHECK(compare_maps(b, "b", a, "a").all.n == 2 * a.n_cells());
+}
+
 TEST_CASE("compare: what one of them has not measured is left out; nothing in common is refused") {
     const Map a = map_of(12, 10, kPaperDepths_m, plane);
     Map holes = a;

@@ -373,6 +373,25 @@ test('a full storage without a desk: the study waits and says so; exporting lets
     assert.equal((await report(page)).study.finished, 1);
 }, {protocols: {twice: {...tiny, repeats: 2}}}));
 
+test('a full storage: after a reload the end still says that a trial is only in the exported file', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await trialWithoutRoom(browser, desk, true);
+    await key(page, 'Enter');
+    const saved = page.waitForEvent('download');
+    await page.evaluate(() => palpaTrials.exportAll());
+    await saved;
+    await page.context().setOffline(false);
+    await reload(page);
+    await key(page, 'Enter');
+    await begin(page);
+    await stroke(browser, 700, 400);
+    await key(page, 'f');
+    await key(page, 'Enter');
+    await at(page, 'done');
+    await until('sent', async () => (await stored(page)).some((trial) => trial.sent));
+    assert.equal(await page.evaluate(() => palpaTrials.where('5')), 'The trials are at the desk or in an exported file.');
+}, {protocols: {twice: {...tiny, repeats: 2}}}));
+
 test('answers that are typed in, and forced choices: kept one by one, and counted by the desk', options, () => withDesk(async (browser, desk, where) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=hands&participant=6');

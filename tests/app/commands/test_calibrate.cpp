@@ -127,6 +127,8 @@ TEST_CASE("calibrate: bad input ends with status 2, names what is wrong, and lea
     };
     refused("level,force_N\n0,1\n1,2\n", "", "2 distinct levels");
     refused("level,force_N\n0,1\n1,2\n", "--full-contact-area-px2 9", "found no --level contact_area");
+    refused("level,force_N\n0,1\n1,2\n", "--bootstrap 0 --seed 9", "found no --bootstrap above 0");
+    refused("level,force_N\n0,1\n0.5,2\n1,3\n", "--keep-lag", "--keep-lag: found no column time_s in ");
     refused("level,force_N\n0,1\n0.5,1\n1,1\n", "", "the same force");
     refused("level,force_N\n0,1\n0.5,-2\n1,3\n", "", "line 3, force_N");
     refused("level,force_N\n0,1\n0.5,nan\n1,3\n", "", "line 3, force_N");

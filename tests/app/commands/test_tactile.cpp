@@ -160,6 +160,10 @@ TEST_CASE("tactile run: a replay takes the schedule of its run, or warns of anot
     CHECK(result_of(same)["schedule"] == "free");
     CHECK(files::read_text(slab.folder / "run/pins.tsv") == files::read_text(slab.folder / "same/pins.tsv"));
     CHECK_FALSE(contains(same.err, "--schedule"));
+    CHECK(result_of(same)["seed"].is_null());  // no simulator takes part
+    const Called seeded = replay(" --seed 3");
+    CHECK(seeded.status == 2);
+    CHECK(contains(seeded.err, "--seed: found without simulators"));
     const Called other = replay(" --schedule lead --log " + slab.path("other"));
     CHECK(other.status == 0);
     CHECK(contains(other.err, "the run had --schedule free; the pins are told other heights"));

@@ -120,6 +120,8 @@ TEST_CASE("tangible run: a replay takes the fidelity and the rate of the run, an
         return out;
     };
     CHECK(commands("a") == commands("b"));
+    CHECK(same["seed"].is_null());  // rows have no plant
+    CHECK(contains(palpa_with(run + strip.path("c") + replay + " --seed 3").err, "--seed: found beside --replay"));
     const Called other = palpa_with(run + strip.path("c") + replay + " --fidelity step");
     CHECK(other.status == 0);
     CHECK(contains(other.err, "the run had --fidelity linear --rate-Hz 200; the commands are others"));

@@ -13,6 +13,7 @@ using namespace palpa::app;
 namespace {
 
 struct LedMoment {
+    double force_N = 0.0;
     const char* fault = "";
     bool stopped = false;
 };
@@ -38,6 +39,7 @@ struct LedDriver {
     }
     void hand_over(const scene::State&) const {}
     bool latest(LedMoment& moment) const {
+        moment.force_N = 0.8;
         moment.fault = led.fault;
         moment.stopped = std::string(led.fault) == "stopped";
         return true;
@@ -100,7 +102,10 @@ TEST_CASE("device control: F12 holds over trials until it is released, and stops
     CHECK(control.shown->moment.stopped);
     CHECK(std::string(control.shown->moment.fault) == kStopKey);  // by whom
     CHECK(failed(1.0, control));
+    CHECK(control.shown->moment.force_N == 0.8);
     rest(control);
+    CHECK(control.shown->moment.force_N == 0.0);  // the device rests: no force of the last moment is shown any more
+    CHECK(control.shown->moment.stopped);
     CHECK(control.report["stops"] == 2);
     show_instead(LedShown{}, control);  // the next trial
     CHECK(control.shown->moment.stopped);

@@ -7,6 +7,7 @@
 
 #include "app/screens/font.h"
 #include "app/screens/gui.h"
+#include "app/screens/widgets.h"
 #include "tests/app/screens/typing.h"
 #include "tests/off_screen.h"
 
@@ -157,6 +158,25 @@ TEST_CASE("gui: letters of a study's texts are drawn where the font has them") {
     CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x416) != nullptr);
     CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x2014) != nullptr);
     CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback('A') != nullptr);
+}
+
+TEST_CASE("gui: a mark's label covers no name of a nodule, no mark and no other label") {
+    Form form;
+    form.frames(2);
+    const float mm = form.gui.mm();
+    const std::vector<PanelArea> names{{210.0f, 90.0f, 290.0f, 112.0f}, {150.0f, 60.0f, 190.0f, 85.0f}};
+    const std::vector<Label> labels{{ImVec2(200.0f, 100.0f), "1 false positive, confidence 4"},
+                                    {ImVec2(205.0f, 104.0f), "2 false positive"}};
+    const std::vector<PanelArea> areas = label_areas(labels, names, mm);
+    REQUIRE(areas.size() == 2);
+    const auto apart = [](const PanelArea& a, const PanelArea& b) {
+        return a.x1 <= b.x0 || b.x1 <= a.x0 || a.y1 <= b.y0 || b.y1 <= a.y0;
+    };
+    CHECK(apart(areas[0], areas[1]));
+    for (const PanelArea& area : areas) {
+        for (const PanelArea& name : names) CHECK(apart(area, name));
+        for (const Label& mark : labels) CHECK_FALSE(area.holds(mark.at.x, mark.at.y));
+    }
 }
 
 TEST_CASE("gui: F12 stops at once, also while a field takes letters and before any frame is drawn") {

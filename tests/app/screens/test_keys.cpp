@@ -86,6 +86,22 @@ TEST_CASE("keys: no arrow leads onto the frame of the screen's scale, which is d
     CHECK(desk.app.view.scale.card_px_per_mm == before);
 }
 
+TEST_CASE("keys: Escape dismisses a problem only where it is seen, and leads back from other screens, list and menu") {
+    Desk desk("");
+    desk.app.notices.problems = {"the result could not be written"};
+    live_frames(desk, 6);
+    for (const SDL_Keycode opens : {SDLK_v, SDLK_b, SDLK_t, SDLK_F1, SDLK_F10}) {
+        CAPTURE(opens);
+        press(desk, opens);
+        press(desk, SDLK_ESCAPE);
+        CHECK(palpates(desk.app.doing));
+        CHECK_FALSE(desk.app.view.help);
+        CHECK(desk.app.notices.problems.size() == 1);
+    }
+    press(desk, SDLK_ESCAPE);
+    CHECK(desk.app.notices.problems.empty());
+}
+
 TEST_CASE("keys: Y asks for the list of studies in the browser, and for nothing elsewhere") {
     for (const bool browser : {false, true}) {
         Desk desk("");
