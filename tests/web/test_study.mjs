@@ -386,7 +386,6 @@ test('a full storage: after a reload the end still says that a trial is only in 
     await begin(page);
     await stroke(browser, 700, 400);
     await key(page, 'f');
-    await key(page, 'Enter');
     await at(page, 'done');
     await until('sent', async () => (await stored(page)).some((trial) => trial.sent));
     assert.equal(await page.evaluate(() => palpaTrials.where('5')), 'The trials are at the desk or in an exported file.');
