@@ -109,7 +109,7 @@ struct Label {
     std::string text;
 };
 // Returns where each label goes beside its mark: the first of eight places where it covers no mark, no other label and
-// nothing that is `taken`, and stays in the window.
+// nothing that is `taken`, and stays in the window; if there is none, the last.
 std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float mm);
 void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float mm, ImDrawList& draw);
 // Says that the window has no room for controls.
