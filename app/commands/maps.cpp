@@ -198,7 +198,7 @@ void add_generate(CLI::App& maps) {
         "i/n: compute only this share of the lines, into NAME.map.lines (default on a cluster: from Slurm or OpenMPI)");
     CLI::Option* merge = command->add_flag("--merge", options.merge, "join the finished lines into the map");
     command->add_flag("--check", options.check,
-                      "compare the new or existing map with a mesh refined once, at 50 points (takes minutes)");
+                      "compare the new or existing map with a mesh refined once, at up to 50 points (takes minutes)");
     command
         ->add_option("--coarseness", options.coarseness,
                      "factor on the mesh spacings: 1 for maps, up to 4 for a quick look")
@@ -216,6 +216,9 @@ void add_generate(CLI::App& maps) {
                 throw files::InputError(std::string(name) + ": found with --method analytic, expected --method fem");
         }
         const stiffnessmaps::GenerateOptions asked = generate_options(*arguments);
+        if (asked.check && asked.part)
+            throw files::InputError(
+                "--check: found with a part, expected a whole map: check it once its parts are joined");
         if (asked.analytic && asked.part)
             throw files::InputError(
                 "SLURM_ARRAY_TASK_ID or OMPI_COMM_WORLD_RANK: found with --method analytic, expected "

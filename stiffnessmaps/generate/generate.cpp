@@ -92,6 +92,7 @@ Map joined(const MapTask& task) {
 }
 
 struct Differences {
+    std::size_t points = 0;
     double largest = 0.0;
     double median = 0.0;
     double largest_tangential = 0.0;  // with friction: either array
@@ -102,7 +103,9 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
     const mechanics::RollingTables tables = read_windows(refined);
     std::vector<double> differences;
     files::Json points = files::Json::array();
-    for (const Cell& cell : probe_cells(task.phantom, kProbes)) {
+    const std::vector<Cell> cells = probe_cells(task.phantom, kProbes);
+    found.points = cells.size();
+    for (const Cell& cell : cells) {
         const std::vector<mechanics::RollingForce> reference = press_cell(refined, tables, cell);
         files::Json in_map = files::Json::array();
         files::Json refined_N = files::Json::array();
@@ -155,7 +158,7 @@ std::string error_estimate(const GenerateOptions& options, const MapTask& task, 
         if (is_rough(task))
             text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) +
                     " % of it where it is largest";
-        return text + " (" + std::to_string(kProbes) + " points against meshes " + files::short_number(kCoarser) +
+        return text + " (" + std::to_string(found.points) + " points against meshes " + files::short_number(kCoarser) +
                " times coarser); up to twice that on meshes so coarse that a contact spans one or two cells.";
     } catch (const files::InputError&) {
         return " Error of the meshes: not estimated, coarser ones cannot be made.";
@@ -205,7 +208,7 @@ void check(const GenerateOptions& options, const MapTask& task, const MapTask& r
     Differences differences;
     const files::Json report = convergence_json(task, refined, map, differences);
     files::write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
-    std::string found = std::to_string(kProbes) +
+    std::string found = std::to_string(differences.points) +
                         " points against meshes refined once: " + files::short_number(100.0 * differences.largest) +
                         " % of the greatest force at most, " + files::short_number(100.0 * differences.median) +
                         " % in the median";
@@ -286,7 +289,7 @@ void generate_map(const GenerateOptions& options) {
                                "0 to " + std::to_string(window_count(task) - 1));
     }
     if (options.window) return compute_window(task, *options.window);
-    if (!options.check || !fs::exists(options.output)) {
+    if (!options.check || options.merge || !fs::exists(options.output)) {
         files::check_new(options.output);
         if (options.merge && !fs::exists(task.folder))
             throw files::bad_input(task.folder.string(), "", "nothing", "the pieces of the parts, before --merge");

@@ -252,15 +252,18 @@ void compute_line(const MapTask& task, const mechanics::RollingTables& tables, s
 
 std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count) {
     std::vector<Cell> cells;
+    std::size_t tried = 0;
     const auto add = [&](double x_m, double y_m) {
         const auto nearest = [](double at_m, double origin_m, double spacing_m, std::size_t n) {
             const double steps = std::round((at_m - origin_m) / spacing_m);
             return static_cast<std::size_t>(std::clamp(steps, 0.0, static_cast<double>(n - 1)));
         };
-        if (cells.size() < count) {
-            cells.push_back({nearest(x_m, phantom.origin_m[0], phantom.spacing_m[0], phantom.n_x),
-                             nearest(y_m, phantom.origin_m[1], phantom.spacing_m[1], phantom.n_y)});
-        }
+        if (tried == count) return;
+        ++tried;
+        const Cell cell{nearest(x_m, phantom.origin_m[0], phantom.spacing_m[0], phantom.n_x),
+                        nearest(y_m, phantom.origin_m[1], phantom.spacing_m[1], phantom.n_y)};
+        const auto same = [&](const Cell& other) { return other.i == cell.i && other.j == cell.j; };
+        if (std::none_of(cells.begin(), cells.end(), same)) cells.push_back(cell);
     };
     constexpr std::size_t kNodules = 3;  // at most, so that the rest of the grid keeps its share
     // the nodules that demand most of the meshes: those with the least cover for their size
@@ -279,7 +282,7 @@ std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count) {
         }
     }
     // a low-discrepancy sequence (Roberts' R2), stretched so that it also meets the edges of the grid
-    for (int k = 1; cells.size() < count; ++k) {
+    for (int k = 1; tried < count; ++k) {
         const auto share = [&](double step) {
             const double s = std::fmod(0.5 + step * k, 1.0);
             return 1.06 * s - 0.03;

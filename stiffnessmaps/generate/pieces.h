@@ -48,6 +48,7 @@ struct Cell {
     std::size_t i = 0;
     std::size_t j = 0;
 };
+// At most so many, each once: a small grid has fewer.
 std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count);
 // True if the tool slides with friction.
 inline bool is_rough(const MapTask& task) { return task.model.friction > 0.0; }

@@ -3,6 +3,7 @@
 #include <array>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <set>
 #include <sys/wait.h>
 
 #include "files/text.h"
@@ -232,6 +233,7 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
                  "p.json: nodules[0].diameter_mm: found 0.01, which needs a mesh of");
     out_of_reach("\"radius_mm\": 3", "\"radius_mm\": 0.001", "indenter.radius_mm: found 0.001, which needs");
     refused("40000", "40000", "--part 3/2", "i/n with 1 <= i <= n");
+    refused("40000", "40000", "--part 1/2 --check", "--check: found with a part");
     CHECK(message_of([] { parse_part("2"); }) != "");
     CHECK(parse_part("2/8").count == 8);
 }
@@ -267,4 +269,12 @@ TEST_CASE("generate: the 50 points of the check lie on the grid, over the nodule
         at_edge += cell.i == 0 || cell.i + 1 == phantom.n_x || cell.j == 0 || cell.j + 1 == phantom.n_y;
     }
     CHECK(at_edge >= 2);
+    Phantom small = phantom;  // 4 x 3 places
+    small.n_x = 4;
+    small.n_y = 3;
+    std::set<std::pair<std::size_t, std::size_t>> places;
+    const std::vector<Cell> few = probe_cells(small, 50);
+    for (const Cell& cell : few) places.insert({cell.i, cell.j});
+    CHECK(few.size() <= 12);
+    CHECK(places.size() == few.size());
 }
