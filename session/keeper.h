@@ -27,6 +27,7 @@ class TrialKeeper {
     virtual std::string where(const std::string& code) const = 0;  // where a participant's trials are; "": not known
     virtual void keep_settings(const std::filesystem::path& file) = 0;  // copies the file of the app's settings
     virtual void keep_design(const std::filesystem::path& file) = 0;    // copies a part file that a person has changed
+    virtual bool keeps_designs() const { return true; }                 // false: for some of those there is no room
     virtual void offer(const std::filesystem::path& file) = 0;  // gives the person a copy of a file, to take away
     virtual void open() = 0;                                    // shows the person all that is kept
     virtual void open_studies() = 0;                            // lets the person choose a study

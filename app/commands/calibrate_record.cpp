@@ -109,9 +109,13 @@ void record(RecordArguments& arguments) {
         print_recorded(arguments, result);
     }
     if (silent) throw std::runtime_error(record.sensor + ": it sent nothing");
-    if (result["points"] == 0)
-        throw std::runtime_error(record.folder +
-                                 ": no point was recorded, which takes a level held still and its force");
+    if (result["points"] == 0) {
+        const auto without = result["without_level"].get<std::int64_t>();
+        throw std::runtime_error(
+            record.folder + ": no point was recorded, which takes a level held still and its force" +
+            (without == 0 ? ""
+                          : " (" + std::to_string(without) + " samples of the device had no " + arguments.level + ")"));
+    }
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ class LevelStream : public LevelSource {
 // A window to press on, with the guide that the app's screen shows.
 class LevelWindow : public LevelSource {
   public:
-    LevelWindow() : window_(options()), gui_(window_) {}
+    LevelWindow() : window_(options()), gui_(window_) { guide_.makes_profile = false; }  // palpa calibrate fit does
 
     bool poll(double wait_s, std::vector<platform::Sample>& out) override {
         window_.poll(wait_s, out);

@@ -171,7 +171,7 @@ stiffnessmaps::GenerateOptions generate_options(const GenerateArguments& argumen
     if (arguments.window >= 0) options.window = arguments.window;
     if (!arguments.part.empty()) {
         options.part = stiffnessmaps::parse_part(arguments.part);
-    } else if (arguments.jobs == 0 && !options.merge && !options.check && !options.window) {
+    } else if (arguments.jobs == 0 && !options.merge && !options.window) {
         options.part = stiffnessmaps::part_from_environment();
     }
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());

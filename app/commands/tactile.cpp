@@ -80,6 +80,10 @@ void check_tactile_run(const TactileOptions& options) {
         throw files::InputError(
             "found no --replay PRESS.tsv, expected a press or recorded rows (the "
             "app's screen of arm and pins, key T, is for presses by hand)");
+    if (holds_rows(options.replay) && (options.simulate || options.virtual_time))
+        throw files::InputError(
+            std::string(options.simulate ? "--simulate" : "--virtual-time") +
+            ": found beside recorded rows, expected one of the two: rows are run without simulators");
     if (options.seed && !is_simulated(options))
         throw files::InputError("--seed: found without simulators, expected --simulate or --virtual-time, and a press");
     if (options.arm.empty() && options.pins.empty()) return;

@@ -54,7 +54,10 @@ void note_devices(const platform::Window& window, App& app) {
     if (app.notices.devices_listed) note_changes(now, app.notices);
     app.notices.devices = now;
     if (study_of(app.doing) != nullptr) return;
-    if (app.keeper != nullptr) app.notices.trials_note = app.keeper->note();
+    if (app.keeper != nullptr) {
+        app.notices.trials_note = app.keeper->note();
+        app.view.part.unstored = !app.keeper->keeps_designs();
+    }
     if (!window.input_note().empty()) notes.push_back(window.input_note());
     app.notices.offer_hold = false;
     for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger}) note_pressure(tool, app);

@@ -272,7 +272,8 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     value_line(words::kPoints, std::to_string(session.points.size()), column_px);
     value_line(words::kPressNumber, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);
-    if (big_button(words::kCreateProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
+    if (guide.makes_profile)
+        wishes.keep = big_button(words::kCreateProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui);
     const bool points = !session.points.empty();
     if (big_button(words::kDropPoint, "", {0.0f, kTarget_mm, points, false}, gui)) {
         calibration::drop_last_point(recording);

@@ -27,6 +27,7 @@ struct Guide {
     int frames_since_focus = 0;
     bool pressed = false;  // the pen was down in the last frame
     std::string note;
+    bool makes_profile = true;  // false: it only records, and has no button for a profile
 };
 
 struct GuideWishes {

@@ -288,6 +288,7 @@ void draw_part_header(const Shown& shown, const Gui& gui, ViewState& view, Wishe
 // Where the changed designs are.
 void draw_kept(const PartView& view) {
     if (view.kept[0].empty() && view.kept[1].empty()) return;
+    if (view.in_browser && view.unstored) return warning_paragraph(words::kDesignNotKept);
     if (view.in_browser) return paragraph(words::kDesignKeptHere);
     for (const auto& file : view.kept) {
         if (file.empty()) continue;

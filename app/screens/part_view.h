@@ -56,6 +56,7 @@ struct PartView {
     std::size_t undone = 0;          // edits that can be done again
     bool earlier = false;            // designs of another day can be opened
     bool in_browser = false;         // changed designs are kept there, and offered as files
+    bool unstored = false;           // for some of them the browser had no room
     std::array<std::filesystem::path, 2> kept;  // files of the changed designs; empty: not changed
 };
 

@@ -43,6 +43,9 @@ void draw_soft_state(const TangibleShown& soft) {
     ImGui::TextUnformatted(words::kSoftRuns);
 }
 
+// Each drive has its relaxed value then, which the device file names.
+bool is_relaxed(const TangibleMoment& moment) { return moment.stopped || (*moment.fault != '\0' && !moment.held); }
+
 std::string rendered_title(const session::TangibleBody& body) {
     return words::filled(words::kRenderedForce, {body.rendered.empty() ? "-" : body.rendered});
 }
@@ -111,8 +114,9 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
         ImGui::TableNextColumn();
         draw_actuation_bar(actuator, soft.moment.actuation[k], at_limit, gui);
         ImGui::TableNextColumn();
-        const std::string command =
-            actuator.by_length ? in_unit(soft.moment.length[k], 1e3, 2, "mm") : actuation_text(actuator, a);
+        const std::string command = is_relaxed(soft.moment) ? words::kRelaxedDrive
+                                    : actuator.by_length    ? in_unit(soft.moment.length[k], 1e3, 2, "mm")
+                                                            : actuation_text(actuator, a);
         const char* said = at_limit ? words::kAtLimit : held ? words::kHeld : "{}";
         ImGui::TextUnformatted(words::filled(said, {command}).c_str());
     }
@@ -263,7 +267,9 @@ void draw_pictures(const PanelArea& area, const TangibleShown& soft, float mm) {
     const float split = area.y0 + 0.52f * area.height();
     if (!soft.body.rest_m.empty()) {
         draw.AddText(ImVec2(area.x0, area.y0), kInk, words::filled(words::kSoftDeformed, {soft.body.device}).c_str());
-        const session::PointOfDevice* nodes = soft.has_shape ? soft.shape->node_m.data() : soft.body.rest_m.data();
+        // while the device is relaxed, nothing is computed of its shape: it is drawn as it is without a finger
+        const bool computed = soft.has_shape && !is_relaxed(soft.moment);
+        const session::PointOfDevice* nodes = computed ? soft.shape->node_m.data() : soft.body.rest_m.data();
         draw_soft_body({area.x0, area.y0 + 1.4f * text_px, area.x1, split}, soft.body, nodes, soft.moment, mm, draw);
     }
     const float gap_px = 4.0f * mm;

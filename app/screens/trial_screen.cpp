@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/screens/force_bar.h"
 #include "app/screens/pins_drawing.h"
@@ -316,14 +317,19 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
 
 void draw_problems(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const Notices& notices = shown.notices;
-    for (const std::string& problem : notices.problems) warning_paragraph(problem);
-    if (notices.problems.empty()) {
+    const auto count = static_cast<int>(notices.problems.size());
+    const int before = std::exchange(*ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("problems")), count);
+    if (count == 0) {
         if (notices.trial_stopped) warning_paragraph(words::kTrialStopped);
         return;
     }
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    for (const std::string& problem : notices.problems) warning_paragraph(problem);
+    const bool seen = ImGui::IsRectVisible(from, ImVec2(from.x + 1.0f, ImGui::GetCursorScreenPos().y));
     const bool* menu = menu_of(shown.doing);
-    const bool by_key = gui.pressed(platform::key::escape) && !(menu != nullptr && *menu);
+    const bool by_key = seen && gui.pressed(platform::key::escape) && !(menu != nullptr && *menu);
     if (big_button(words::kDismiss, words::kEscape, {}, gui) || by_key) wishes.understood = true;
+    if (count > before) ImGui::SetScrollHereY(1.0f);  // below what fits, a new problem is scrolled to, once
 }
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {

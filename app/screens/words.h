@@ -293,6 +293,7 @@ inline constexpr const char* kEarlierEdits = "Earlier changes";
 inline constexpr const char* kHintEarlierEdits = "Opens the designs as they were changed last";
 inline constexpr const char* kDesignKept = "Your changes are kept in {}, in the folder {}.";
 inline constexpr const char* kDesignKeptHere = "Your changes are kept in this browser.";
+inline constexpr const char* kDesignNotKept = "Your changes are not stored. Save them before you leave this page.";
 inline constexpr const char* kSaveDesign = "Save {} to a file";
 inline constexpr const char* kHintSaveDesign =
     "Saves the changed design to a file, to evaluate or export it on the desk";
@@ -387,6 +388,7 @@ inline constexpr const char* kNoSoftDevices =
 inline constexpr const char* kSoftOpening = "The soft device is getting ready.";
 inline constexpr const char* kSoftRuns = "Running";
 inline constexpr const char* kSoftHeld = "The last valid command is held.";
+inline constexpr const char* kRelaxedDrive = "relaxed";
 inline constexpr const char* kSoftRests = "The device is relaxed: no trial is running.";
 inline constexpr const char* kSoftStoppedBy = "Stopped: {}. The device is relaxed until you choose Release.";
 inline constexpr const char* kSoftRestsSince = "The device is relaxed: {}.";

@@ -23,6 +23,7 @@ EM_JS(void, palpa_trials_part, (const char* name, const char* path, double offse
 EM_JS(void, palpa_trials_participant, (const char* code), { palpaTrials.setParticipant(UTF8ToString(code)); });
 EM_JS(int, palpa_trials_next_run, (), { return palpaTrials.nextRun(); });
 EM_JS(int, palpa_trials_ready, (), { return palpaTrials.ready() ? 1 : 0; });
+EM_JS(int, palpa_trials_keeps_designs, (), { return palpaTrials.keepsDesigns() ? 1 : 0; });
 EM_JS(void, palpa_trials_failed, (const char* message), { palpaTrials.tell(UTF8ToString(message)); });
 EM_JS(char*, palpa_trials_text, (int which, const char* code), {
     const text = which === 0 ? palpaTrials.nextProblem() : which === 1 ? palpaTrials.note() : which === 2 ? palpaTrials.participant()
@@ -152,6 +153,7 @@ void BrowserKeeper::keep_settings(const std::filesystem::path& file) {
 }
 
 void BrowserKeeper::keep_design(const fs::path& file) { palpa_trials_keep_design(file.c_str()); }
+bool BrowserKeeper::keeps_designs() const { return palpa_trials_keeps_designs() != 0; }
 void BrowserKeeper::offer(const fs::path& file) { palpa_trials_offer(file.c_str()); }
 void BrowserKeeper::open() { palpa_trials_open(); }
 void BrowserKeeper::open_studies() { palpa_studies_open(); }

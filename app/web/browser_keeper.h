@@ -20,6 +20,7 @@ class BrowserKeeper : public session::TrialKeeper {
     std::string where(const std::string& code) const override;
     void keep_settings(const std::filesystem::path& file) override;
     void keep_design(const std::filesystem::path& file) override;
+    bool keeps_designs() const override;
     void offer(const std::filesystem::path& file) override;
     void open() override;
     void open_studies() override;

@@ -419,8 +419,10 @@ const palpaTrials = (() => {
         setTimeout(() => URL.revokeObjectURL(link.href), 60000);
     };
 
+    const unstored = new Set(); // changed parts that are only on this page
     const keepDesign = (path) => {
-        request('readwrite', (store) => { store.put({path, text: contentOf(path)}); }, ['designs']).catch((error) => {
+        request('readwrite', (store) => { store.put({path, text: contentOf(path)}); }, ['designs']).then(() => unstored.delete(path), (error) => {
+            unstored.add(path);
             tell(palpaFilled(palpaWords.designNotStored, whyNot(error)));
         });
     };
@@ -511,6 +513,7 @@ const palpaTrials = (() => {
     return {
         start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
         ready: () => writing === 0 && inDanger() === 0,
+        keepsDesigns: () => unstored.size === 0,
         nextProblem: () => problems.shift() || '',
         nextSolved: () => solved.shift() || '',
         note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.storedHere,

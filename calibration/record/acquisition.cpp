@@ -66,8 +66,11 @@ void take_levels(const std::vector<platform::Sample>& samples, Recording& record
             continue;
         const double level = level_of(profile, sample);
         if (sample.phase != platform::Phase::up && sample.phase != platform::Phase::hover &&
-            sample.phase != platform::Phase::cancel && std::isnan(level))
+            sample.phase != platform::Phase::cancel && std::isnan(level)) {
+            ++recording.without_level;
             continue;
+        }
+        if (touches(sample, level)) recording.knows_level = true;
         ++recording.samples;
         recording.raw->write(sample, level);
         const bool touching = touches(sample, level);
@@ -169,6 +172,7 @@ files::Json result_of(const Recording& recording) {
                      {"below_zero", recording.session.below_zero},
                      {"wrong_sign", pulls(recording)},
                      {"outside_range", recording.outside},
+                     {"without_level", recording.without_level},
                      {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
         json["sensor"] = {{"name", recording.sensor->name()},
@@ -321,6 +325,8 @@ std::string advice(const Recording& recording) {
     if (recording.invalid) return "the sensor is overloaded";
     if (recording.sensor && std::isnan(recording.session.zero_N)) return "do not touch (zero)";
     if (pulls(recording)) return "the force falls: wrong sign";
+    if (recording.without_level > 0 && !recording.knows_level)
+        return std::string("this device reports no ") + name_of(recording.arguments.level.level);
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     if (band < 0) return "lift the pen";
     return "press to " + files::short_number(100.0 * band / options.bands) + " - " +

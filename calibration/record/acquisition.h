@@ -70,7 +70,9 @@ struct Recording {
     std::int64_t invalids = 0;  // such readings so far
     double invalid_s = -1.0;    // when the last one came
     std::int64_t outside = 0;   // levels of touches outside arguments.options.range, from which no point can follow
-    double outside_level = 0.0;  // the first of them
+    double outside_level = 0.0;      // the first of them
+    std::int64_t without_level = 0;  // samples of touches whose device does not report arguments.level
+    bool knows_level = false;        // some touch had one
 };
 
 // Opens sensor, folder and files. Throws InputError for impossible arguments, std::runtime_error for what cannot be

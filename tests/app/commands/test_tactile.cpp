@@ -161,6 +161,7 @@ TEST_CASE("tactile run: a replay takes the schedule of its run, or warns of anot
     CHECK(files::read_text(slab.folder / "run/pins.tsv") == files::read_text(slab.folder / "same/pins.tsv"));
     CHECK_FALSE(contains(same.err, "--schedule"));
     CHECK(result_of(same)["seed"].is_null());  // no simulator takes part
+    CHECK(contains(replay(" --virtual-time").err, "--virtual-time: found beside recorded rows"));
     const Called seeded = replay(" --seed 3");
     CHECK(seeded.status == 2);
     CHECK(contains(seeded.err, "--seed: found without simulators"));

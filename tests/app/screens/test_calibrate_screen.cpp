@@ -252,3 +252,16 @@ TEST_CASE("calibrate screen: a mouse has no pressure, and is told so instead of 
     step_calibrate({sample}, form);
     CHECK(form.recording->session.levels.size() == 1);
 }
+
+TEST_CASE("calibrate screen: a device that does not report the level is told so, and its samples are counted") {
+    const TemporaryFolder folder;
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    arguments.level.level = calibration::LevelField::contact_area;
+    const auto recording = calibration::open_recording(arguments);
+    CHECK(calibration::advice(*recording).rfind("press to ", 0) == 0);
+    hold(0.5, *recording);  // a pen without a contact area
+    CHECK(calibration::advice(*recording) == "this device reports no contact_area");
+    CHECK(calibration::close_recording(*recording)["without_level"] == 201);
+}

@@ -102,6 +102,15 @@ TEST_CASE("keys: Escape dismisses a problem only where it is seen, and leads bac
     CHECK(desk.app.notices.problems.empty());
 }
 
+TEST_CASE("keys: a problem below the tools of parts is scrolled to, so that Escape dismisses what was seen") {
+    Desk desk("button");
+    live_frames(desk, 6);
+    desk.app.notices.problems = {"the change could not be kept"};
+    live_frames(desk, 6);
+    press(desk, SDLK_ESCAPE);
+    CHECK(desk.app.notices.problems.empty());
+}
+
 TEST_CASE("keys: Y asks for the list of studies in the browser, and for nothing elsewhere") {
     for (const bool browser : {false, true}) {
         Desk desk("");
