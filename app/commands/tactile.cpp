@@ -53,10 +53,7 @@ scene::PinSchedule schedule_of(const std::string& name) {
 // A table whose first column is `row` holds recorded rows of a loop, any other a press.
 bool holds_rows(const fs::path& file) { return files::read_tsv(file).columns().front() == "row"; }
 
-// Recorded rows are run without devices.
-bool is_simulated(const TactileOptions& options) {
-    return (options.simulate || options.virtual_time) && !holds_rows(options.replay);
-}
+bool is_simulated(const TactileOptions& options) { return options.simulate || options.virtual_time; }
 
 void take_ports(const TactileOptions& options, tactile::TactilePlan& plan) {
     if (!options.pins.empty()) {
@@ -80,7 +77,7 @@ void check_tactile_run(const TactileOptions& options) {
         throw files::InputError(
             "found no --replay PRESS.tsv, expected a press or recorded rows (the "
             "app's screen of arm and pins, key T, is for presses by hand)");
-    if (holds_rows(options.replay) && (options.simulate || options.virtual_time))
+    if (is_simulated(options) && holds_rows(options.replay))
         throw files::InputError(
             std::string(options.simulate ? "--simulate" : "--virtual-time") +
             ": found beside recorded rows, expected one of the two: rows are run without simulators");
@@ -100,7 +97,7 @@ void check_tactile_run(const TactileOptions& options) {
 // Recorded rows are only the input: the schedule of their run stands in the report beside them. A run that was killed, or
 // one of the app, has none; those of the app have the scene's.
 void take_recorded_schedule(TactileOptions& options) {
-    if (options.replay.empty() || !holds_rows(options.replay)) return;
+    if (!holds_rows(options.replay)) return;
     const fs::path report = fs::path(options.replay).parent_path() / "performance.json";
     std::error_code error;
     if (!fs::exists(report, error)) return;
@@ -158,10 +155,10 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
     tactile::make_table_now(files::cache_folder(), {}, *plan);
     if (!options.log.empty()) fs::create_directories(options.log);
     std::unique_ptr<tactile::Simulators> simulators;
-    if (!rows && options.simulate && !options.virtual_time)
+    if (options.simulate && !options.virtual_time)
         simulators = tactile::start_simulators(options.replay, run.seed, *plan);
     if (rows) return session::replay_rows(plan, recorded, run);  // no device takes part
-    for (const session::TactileDevice& device : session::devices_of(*plan, options.simulate || options.virtual_time)) {
+    for (const session::TactileDevice& device : session::devices_of(*plan, is_simulated(options))) {
         devices.push_back({{"role", device.role},
                            {"name", device.name},
                            {"port", options.virtual_time ? "" : device.port},
