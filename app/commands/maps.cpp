@@ -218,7 +218,8 @@ void add_generate(CLI::App& maps) {
         const stiffnessmaps::GenerateOptions asked = generate_options(*arguments);
         if (asked.check && asked.part)
             throw files::InputError(
-                "--check: found with a part, expected a whole map: check it once its parts are joined");
+                "--check: found with a part (of --part, SLURM_ARRAY_TASK_ID or OMPI_COMM_WORLD_RANK), expected a "
+                "whole map: check it once its parts are joined");
         if (asked.analytic && asked.part)
             throw files::InputError(
                 "SLURM_ARRAY_TASK_ID or OMPI_COMM_WORLD_RANK: found with --method analytic, expected "

@@ -234,6 +234,11 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     out_of_reach("\"radius_mm\": 3", "\"radius_mm\": 0.001", "indenter.radius_mm: found 0.001, which needs");
     refused("40000", "40000", "--part 3/2", "i/n with 1 <= i <= n");
     refused("40000", "40000", "--part 1/2 --check", "--check: found with a part");
+    const Called array_task =
+        bench.shell("SLURM_ARRAY_TASK_ID=1 SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_COUNT=2 timeout 60" +
+                    bench.call("n.map", "--check"));
+    CHECK(array_task.status == 2);
+    CHECK(contains(array_task.err, "--check: found with a part (of --part, SLURM_ARRAY_TASK_ID"));
     CHECK(message_of([] { parse_part("2"); }) != "");
     CHECK(parse_part("2/8").count == 8);
 }
