@@ -23,4 +23,12 @@ double Meter::quantile_ns(double q) const {
     return worst_ns_;
 }
 
+Meter Meter::since(const Meter& earlier) const {
+    Meter out = *this;
+    out.calls_ -= earlier.calls_;
+    out.timed_ -= earlier.timed_;
+    for (std::size_t i = 0; i < buckets_.size(); ++i) out.buckets_[i] -= earlier.buckets_[i];
+    return out;
+}
+
 }  // namespace palpa::scene

@@ -17,6 +17,8 @@ class Meter {
     std::int64_t timed() const { return timed_; }
     double quantile_ns(double q) const;  // q in 0 ... 1; 0 ns if nothing was timed
     double worst_ns() const { return worst_ns_; }
+    // What was counted and timed since `earlier`, a copy of this meter; the worst is still that of all.
+    Meter since(const Meter& earlier) const;
 
   private:
     static constexpr int kPerOctave = 32;

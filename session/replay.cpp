@@ -94,16 +94,15 @@ ReplayResult replay(const platform::Trace& trace, Session& session, double until
     return result;
 }
 
-files::Json run_json(const Session& session, std::int64_t frames, const scene::Meter& latency) {
+namespace {
+
+files::Json figures_json(const Session& session, const Totals& sum, std::int64_t frames, const scene::Meter& latency) {
     const scene::Scene& scene = session.scene;
     const scene::Plan& plan = *session.plan;
     const scene::State& state = session.state;
-    const Totals sum = session.before + state;
     const scene::Counters& counters = sum.counters;
     files::Json json;
     json["scene"] = scene.name;
-    for (const std::string& pressed : session.pressed_scenes)
-        if (pressed != scene.name) json["earlier_scenes"].push_back(pressed);
     json["samples"] = counters.samples;
     json["frames"] = frames;
     json["steps"] = counters.steps;
@@ -141,6 +140,19 @@ files::Json run_json(const Session& session, std::int64_t frames, const scene::M
     if (const auto switched = scene::switch_events(plan.tissue, state.tissue)) json["switch_events"] = *switched;
     json["notes"] = scene::notes_of(scene, plan);
     return json;
+}
+
+}  // namespace
+
+files::Json run_json(const Session& session, std::int64_t frames, const scene::Meter& latency) {
+    files::Json json = figures_json(session, session.before + session.state, frames, latency);
+    for (const std::string& pressed : session.pressed_scenes)
+        if (pressed != session.scene.name) json["earlier_scenes"].push_back(pressed);
+    return json;
+}
+
+files::Json trial_run_json(const Session& session, std::int64_t frames, const scene::Meter& latency) {
+    return figures_json(session, Totals{} + session.state, frames, latency);
 }
 
 files::Json result_json(const Session& session, const ReplayResult& result) {

@@ -64,6 +64,9 @@ ReplayResult replay(const platform::Trace& trace, Session& session, double until
 // Returns the keys that every run reports, of all its trials (docs/formats.md).
 files::Json run_json(const Session& session, std::int64_t frames, const scene::Meter& latency);
 
+// Returns them of the present trial alone: nothing in it is of an earlier trial.
+files::Json trial_run_json(const Session& session, std::int64_t frames, const scene::Meter& latency);
+
 // Returns the keys of run_json() for a replay, and beside them the lag over and beside the nodules, and the trials.
 files::Json result_json(const Session& session, const ReplayResult& result);
 

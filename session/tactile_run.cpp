@@ -128,7 +128,7 @@ std::filesystem::path rows_in(const std::filesystem::path& log) {
 
 namespace {
 
-// Calls each(record, port) after every step, before the devices move on.
+// Calls each(record) after every step, before the devices move on, until it returns false.
 template <class Each>
 void run_virtual_steps(std::span<const devices::PressRow> press, tactile::VirtualPort& port,
                        DeviceLoop<TactileLoop>& loop, const Each& each) {
@@ -146,7 +146,7 @@ void run_virtual_steps(std::span<const devices::PressRow> press, tactile::Virtua
         }
         if (tactile_step(time_s, touch ? &contact : nullptr, port, loop, record.command)) {
             port.send(time_s, record.command);
-            each(record);
+            if (!each(record)) return;
         }
         port.advance(tactile::kStep_s);
     }
@@ -171,6 +171,8 @@ TactileResult run_virtual(std::shared_ptr<const tactile::TactilePlan> plan, cons
     run_virtual_steps(options.press, port, *loop, [&](const StepRecord& record) {
         sink.take(record, port.height_m);
         sink.take_rows(loop->recorded);
+        sink.result.cut = options.ends && options.ends();
+        return !sink.result.cut;
     });
     sink.take_rows(loop->recorded);
     sink.result.devices.guard = port.guarded.guard;
@@ -213,6 +215,7 @@ TactileRecord run_press(const scene::Scene& scene, const scene::Plan& scene_plan
         out.height_m.insert(out.height_m.end(), port.height_m.begin(), port.height_m.end());
         for (DeviceRow row; loop->recorded.take(row);) {
         }
+        return true;
     });
     return out;
 }

@@ -48,7 +48,7 @@ struct TactileRunOptions {
     std::vector<devices::PressRow> press;
     std::filesystem::path log;     // folder that exists; empty for no log
     std::uint64_t seed = 1;        // of simulators in this process
-    std::function<bool()> ends{};  // asked while a live run goes on: true once a person wants its end
+    std::function<bool()> ends{};  // asked while a press goes on: true once a person wants its end
 };
 
 struct TactileResult {

@@ -170,7 +170,8 @@ TangibleResult run_tangible_virtual(std::shared_ptr<const TangiblePlan> plan, co
         sink.take(record);
         sink.take_rows(loop->recorded);
         line.show("pressing", record.command.time_s / seconds);
-        return true;
+        sink.result.cut = options.ends && options.ends();
+        return !sink.result.cut;
     });
     sink.take_rows(loop->recorded);
     sink.finish(loop->report);

@@ -42,7 +42,7 @@ struct TangibleRunOptions {
     Finger finger;
     std::filesystem::path log;     // folder that exists; empty for no log
     std::uint64_t seed = 1;        // of the plant's noise
-    std::function<bool()> ends{};  // asked while a live run goes on: true once a person wants its end
+    std::function<bool()> ends{};  // asked while a press goes on: true once a person wants its end
 };
 
 // What the guard of a real device did with the values for its drives (devices/rig_guard.h), one for each drive and command.

@@ -18,6 +18,7 @@ void read_heights(const MaestroBoards& boards, std::vector<double>& height_m) {
 
 VirtualPort::VirtualPort(const TactilePlan& plan, std::vector<devices::PressRow> press, std::uint64_t seed)
     : guarded(guarded_of(plan)) {
+    const double begin_s = press.empty() ? 0.0 : press.front().t_s;
     if (plan.arm) arm = make_arm_plant(arm_parameters(seed), std::move(press), seed);
     if (!plan.pin_device) return;
     MaestroSettings settings;
@@ -26,7 +27,7 @@ VirtualPort::VirtualPort(const TactilePlan& plan, std::vector<devices::PressRow>
     boards = make_maestro_boards(*plan.pin_device, settings, 0.0, seed);
     if (plan.pin_device->detect_baud) take_bytes({&devices::kMaestroBaudByte, 1}, *boards);
     period_s = devices::write_period_s(*plan.pin_device);
-    frame_due_s = 0.5 * period_s;  // boards keep a time of their own: half a period apart on average
+    frame_due_s = begin_s + 0.5 * period_s;  // boards keep a time of their own: half a period apart on average
     height_m.resize(boards->pin.size());
     read_heights(*boards, height_m);
 }

@@ -164,9 +164,9 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
                            {"port", options.virtual_time ? "" : device.port},
                            {"simulated", device.simulated}});
     }
-    if (options.virtual_time) return session::run_virtual(plan, run);
     const Interrupt interrupt;
     run.ends = [&] { return interrupt.came(); };
+    if (options.virtual_time) return session::run_virtual(plan, run);
     return session::run_live_press(plan, run, simulators ? simulators->heights : fs::path());
 }
 

@@ -136,9 +136,9 @@ session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, cons
     std::optional<tangible::Plant> plant;
     if (!plant_name.empty()) plant = make_plant(plan->model, tangible::read_plant(plant_name), plan->loop);
     if (!arguments.log.empty()) fs::create_directories(arguments.log);
-    if (arguments.headless) return session::run_tangible_virtual(plan, *plant, run);
     const Interrupt interrupt;
     run.ends = [&] { return interrupt.came(); };
+    if (arguments.headless) return session::run_tangible_virtual(plan, *plant, run);
     return session::run_tangible_live(plan, plant, arguments.ports, run);
 }
 

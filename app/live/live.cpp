@@ -332,6 +332,7 @@ void Live::out_of_sight(bool hidden) {
     it.take_samples(0.0);  // of presses that end now
     it.frame_s = it.stirred_s = it.window->now_s();
     it.app.view.on_screen.content = 0;
+    note_sight(hidden, now_of(it.app, *it.window), it.app);
     if (it.app.trace || it.app.session.trial.finished || waits_for_keeper(it.app) || between_study_trials(it.app))
         return;
     platform::Sample sample;

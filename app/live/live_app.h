@@ -62,6 +62,11 @@ struct PartControl {
     std::map<std::size_t, std::filesystem::path> copies;  // by the number of the design that was changed
 };
 
+struct FramesSoFar {
+    std::int64_t count = 0;
+    FrameTimes times;
+};
+
 // Everything that the app has open while its window is open.
 struct App {
     RunOptions options;
@@ -80,7 +85,10 @@ struct App {
     std::size_t next_row = 0;
     double trace_shift_s = 0.0;        // window's clock - trace's clock
     std::int64_t frames = 0;           // number of frames drawn
+    FramesSoFar before_trial;          // when the present trial began
     double drawn_s = 0.0;              // window's clock when the last frame was drawn
+    bool hidden = false;               // out of sight
+    bool over_unseen = false;          // the time of a study's trial was over when the app came back into sight
     double devices_noted_s = -1e9;     // window's clock when the devices were last listed
     bool save_waits = false;           // a picture of the next frame is to be saved
     platform::PressureWatch pressure;  // what pens and fingers have sent; nothing while a trace is replayed
@@ -138,6 +146,7 @@ platform::TraceInfo info_of(const App& app, const platform::Window& window);
 double now_of(const App& app, const platform::Window& window);  // on the clock of the samples
 double finger_offset_mm(const App& app);                        // 0 or kFingerOffset_mm; in a replay, that of the trace
 files::Json result_of(const App& app);                          // what `run --json` would print now
+void begin_figures(App& app);  // a trial begins: the figures of frames in its files are its own
 // Ends all presses and drops their later samples: a press belongs to the trial and the screen in which it began.
 void end_presses(platform::Window& window, App& app);
 // Ends the presses and the trial, then replaces the tissue by that of `scene`. begin() begins a trial on it.
@@ -232,6 +241,8 @@ bool repeat_if_pen_unproven(platform::Window& window, App& app);
 bool felt_elsewhere(const App& app);
 // Returns when the time limit ends the present trial; infinity: never.
 double trial_ends_s(const App& app);
+// The app goes out of sight, or comes back: a trial whose time is over meanwhile says nothing about the person.
+void note_sight(bool hidden, double now_s, App& app);
 bool allowed(const platform::Sample& sample, App& app);  // the due condition allows the sample's device
 files::Json study_json(const App& app);                  // the progress
 // Throws std::runtime_error if the study had to stop.

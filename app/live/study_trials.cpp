@@ -31,6 +31,8 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         files.finger_offset_mm = finger_offset_mm(app);
         name_devices(app, *files.label);
         app.notices.note.clear();
+        begin_figures(app);
+        app.over_unseen = false;
         session::begin_trial(files, info_of(app, window),
                              known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
@@ -210,8 +212,15 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     const double over_s = now_of(app, window) - trial_ends_s(app);
     if (over_s < 0.0) return;
     if (not_touched(app)) return interrupt_study_trial(Interruption::untouched, window, app);
-    if (over_s > kOverslept_s) return interrupt_study_trial(Interruption::overslept, window, app);
+    if (over_s > kOverslept_s || app.hidden || app.over_unseen)
+        return interrupt_study_trial(Interruption::overslept, window, app);
     act(platform::Action::finish, window, app);
+}
+
+void note_sight(bool hidden, double now_s, App& app) {
+    const StudyRun* run = study_of(app.doing);
+    if (!hidden && run != nullptr && trial_goes_on(*run) && now_s >= trial_ends_s(app)) app.over_unseen = true;
+    app.hidden = hidden;
 }
 
 bool allowed(const platform::Sample& sample, App& app) {

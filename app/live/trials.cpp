@@ -67,21 +67,45 @@ double finger_offset_mm(const App& app) {
 
 double now_of(const App& app, const platform::Window& window) { return window.now_s() - app.trace_shift_s; }
 
-files::Json result_of(const App& app) {
-    const session::Session& s = app.session;
-    files::Json result = session::run_json(s, app.frames, app.view.times.latency);
-    const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    result["frame_cpu_ms"] = {{"p50", ms(app.view.times.cpu, 0.5)}, {"p99", ms(app.view.times.cpu, 0.99)}};
-    result["frame_gl_ms"] = {{"p50", ms(app.view.times.gl, 0.5)}, {"p99", ms(app.view.times.gl, 0.99)}};
-    result["latency_besides_drawing_ms"] = {{"p50", ms(app.view.times.ready, 0.5)},
-                                            {"p99", ms(app.view.times.ready, 0.99)}};
+namespace {
+
+// Adds the figures of the frames since `before`, and what the app itself knows.
+void add_figures(const App& app, const FramesSoFar& before, files::Json& result) {
+    const FrameTimes& times = app.view.times;
+    const auto put = [&](const char* key, const scene::Meter& now, const scene::Meter& earlier) {
+        const scene::Meter timed = now.since(earlier);
+        result[key] = {{"p50", 1e-6 * timed.quantile_ns(0.5)}, {"p99", 1e-6 * timed.quantile_ns(0.99)}};
+    };
+    put("frame_cpu_ms", times.cpu, before.times.cpu);
+    put("frame_gl_ms", times.gl, before.times.gl);
+    put("latency_besides_drawing_ms", times.ready, before.times.ready);
     result["problems"] = app.notices.problems;
     if (!app.tactile.report.is_null()) result["tactile"] = app.tactile.report;
     if (!app.tangible.report.is_null()) result["tangible"] = app.tangible.report;
     if (app.check) result["device_check"] = check_json(*app.check);
-    result["trials"] = session::trials_json(s);
+}
+
+// What is kept beside a trial's log: nothing of earlier trials, which may be another person's.
+files::Json performance_of(const App& app) {
+    const session::Session& s = app.session;
+    const FramesSoFar& before = app.before_trial;
+    files::Json result =
+        session::trial_run_json(s, app.frames - before.count, app.view.times.latency.since(before.times.latency));
+    add_figures(app, before, result);
+    result["trials"] = files::Json::array({session::trial_json(*s.plan, s.trial)});
     return result;
 }
+
+}  // namespace
+
+files::Json result_of(const App& app) {
+    files::Json result = session::run_json(app.session, app.frames, app.view.times.latency);
+    add_figures(app, {}, result);
+    result["trials"] = session::trials_json(app.session);
+    return result;
+}
+
+void begin_figures(App& app) { app.before_trial = {app.frames, app.view.times}; }
 
 void end_presses(platform::Window& window, App& app) {
     window.end_presses();
@@ -107,6 +131,7 @@ void begin(platform::Window& window, const Gui& gui, App& app) {
     session::SessionFiles files{app.options.log, app.options.participant, app.options.record};
     files.first_run = app.options.first_run;
     files.finger_offset_mm = finger_offset_mm(app);
+    begin_figures(app);
     session::begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
     begin_devices(app);
@@ -131,7 +156,7 @@ std::string close_trial(const platform::Window& window, App& app) {
     if (study_of(app.doing) != nullptr) session::note_time(now_of(app, window), app.session);
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
     const std::optional<study::RunFiles> files = app.session.files;
-    const bool good = session::close_files(result_of(app), app.session);
+    const bool good = session::close_files(performance_of(app), app.session);
     if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
     if (good) return {};
     const std::string why = words::filled(words::kCannotBeWritten, {where});

@@ -332,7 +332,7 @@ const palpaTrials = (() => {
 
     // Returns false if the desk would take no other trial now either; all are tried again later.
     const sendOne = async (name) => {
-        const trial = unsaved.has(name) ? unsaved.get(name).trial : await request('readonly', (store) => store.get(name));
+        const trial = unsaved.has(name) ? unsaved.get(name).trial : await request('readonly', (store) => store.get(name)).catch(() => null);
         if (!trial || trial.sent) return true;
         const answer = await fetch(`api/logs/${encodeURIComponent(name)}`, {
             method: 'PUT',
@@ -357,7 +357,7 @@ const palpaTrials = (() => {
             unsaved.get(name).trial = sent; // what the study goes on from still has no place
             await save(sent, unsaved.get(name).files, false).catch(carry);
         } else {
-            await request('readwrite', (store) => store.put(sent));
+            await save(sent, [], false).catch(() => unsaved.set(name, {trial: sent, files: [], isNew: false})); // full
         }
         solve(name, '');
         note(sent);

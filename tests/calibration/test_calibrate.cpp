@@ -229,6 +229,21 @@ TEST_CASE("calibrate: repeats that drift are told") {
     CHECK(any_with(apart.warnings, "repeats differ by"));
 }
 
+TEST_CASE("calibrate: a curve below 0 N at the lightest touch is told of, its rounding error is not") {
+    const auto warnings_of = [](double offset_N) {
+        CalibrationRows rows;
+        for (int k = 1; k <= 20; ++k) {
+            const double force_N = 0.12 * std::exp(3.5 * 0.05 * k) + offset_N;
+            if (force_N > 0.0) add_row(0.05 * k, force_N, 0, rows);
+        }
+        CalibrateOptions options;
+        options.model = CurveModel::exponential_offset;
+        return calibrate(rows, options).warnings;
+    };
+    CHECK_FALSE(any_with(warnings_of(-0.1201), "at the lightest touch"));
+    CHECK(any_with(warnings_of(-0.2), "the curve falls to -0.08 N at the lightest touch"));
+}
+
 TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
     CalibrationRows pen;
     CalibrationRows finger;

@@ -106,6 +106,18 @@ TEST_CASE("tactile run: lead halves the mismatch of free at 20 mm/s") {
     CHECK(rms_m[1] > 0.0);
 }
 
+TEST_CASE("tactile run: the time at which a press begins, also one before 0, changes nothing that the pins do") {
+    const TactileScene slab;
+    double rms_m[2] = {0.0, 0.0};
+    for (const double begins_s : {0.0, -5.0}) {
+        std::vector<devices::PressRow> press = a_press();
+        for (devices::PressRow& row : press) row.t_s += begins_s;
+        rms_m[begins_s < 0.0 ? 1 : 0] = tactile::rms_m(run_virtual(slab.tactile_plan(), {press, {}, 1}).mismatch);
+    }
+    CHECK(rms_m[0] > 0.0);
+    CHECK(rms_m[1] == close_to(rms_m[0]).epsilon(1e-6));
+}
+
 TEST_CASE("tactile run: a press by force is pressed by force") {
     const TactileScene slab;
     auto plan = slab.tactile_plan();

@@ -98,6 +98,22 @@ test('an upload that nobody answers is given up, and sent again', () => withPage
     await until('at the desk', () => desk.logs.size === 1);
 }));
 
+test('a storage without room to say that a stored trial is at the desk holds up no other trial', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    await finishTrial(browser);
+    await until('stored', async () => (await stored(page)).length === 1);
+    await page.keyboard.press('r');
+    await frames(page, 4);
+    await fillStorage(page);
+    await finishTrial(browser);
+    await until('said', () => tellsOf(page, 'is not stored'));
+    await pairByDialog(page, desk.code);
+    await until('both are at the desk', () => desk.logs.size === 2);
+    await page.evaluate(() => palpaTrials.open());
+    await until('said', async () => /^0 waiting, 2 at the desk/.test(await page.textContent('#trials-state')));
+    assert.doesNotMatch(await page.textContent('#trials-state'), /not reachable/);
+}));
+
 test('a trial that the desk does not take holds up no other', () => withPage({quiet: true}, async (browser, desk) => {
     const {page} = browser;
     desk.too_large = (name) => name.includes('run-01');

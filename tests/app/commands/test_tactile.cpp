@@ -76,6 +76,22 @@ TEST_CASE("tactile run: a press beside the tissue is warned of") {
     CHECK(contains(called.err, "p.tsv: 1 of 2 rows are beside the tissue (x "));
 }
 
+TEST_CASE("tactile run: a press in virtual time that a signal stops is written as far as it went, and says so") {
+    const SlabFolder slab;
+    files::write_text_atomically(slab.path("p.tsv"), "t_s\tx_mm\ty_mm\tdepth_mm\n0\t20\t20\t0\n9999\t20\t20\t3\n");
+    const std::string log = slab.path("log");
+    const Called called =
+        shell(stopped_once(log + "/steps.tsv", "XDG_CACHE_HOME=" + slab.path("cache") + " " PALPA_PROGRAM " " +
+                                                   slab.command("--virtual-time --log " + log)));
+    CAPTURE(called.err);
+    CHECK(called.status == 0);
+    CHECK(contains(called.err, "stopped by a signal before the press was over"));
+    const files::Json kept = files::read_json(log + "/performance.json");
+    CHECK(contains(kept["warnings"].dump(), "stopped by a signal"));
+    const std::string steps = files::read_text(log + "/steps.tsv");
+    CHECK(std::count(steps.begin(), steps.end(), '\n') == 1 + kept["steps"].get<std::ptrdiff_t>());
+}
+
 TEST_CASE("tactile run: the shipped scene and press: the force holds at its limit, and lead halves the mismatch") {
     const TemporaryFolder folder;
     double rms_mm[2] = {0.0, 0.0};

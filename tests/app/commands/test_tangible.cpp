@@ -1,5 +1,6 @@
 // palpa tangible: the commands as a person calls them, on a strip of few cells.
 
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
@@ -102,6 +103,21 @@ TEST_CASE("tangible run: on a plant in virtual time the log repeats byte for byt
     const Called again = palpa_with(run + strip.path("a"));
     CHECK(again.status == 2);
     CHECK(contains(again.err, "a/ticks.tsv: found something of that name, expected a new name"));
+}
+
+TEST_CASE("tangible run: a press in virtual time that a signal stops is written as far as it went, and says so") {
+    const StripFolder strip;
+    const std::string log = strip.path("log");
+    const Called called =
+        shell(stopped_once(log + "/ticks.tsv", PALPA_PROGRAM " tangible run " + strip.path("scene.json") +
+                                                   " --headless --seconds 100000 --log " + log));
+    CAPTURE(called.err);
+    CHECK(called.status == 0);
+    CHECK(contains(called.err, "stopped by a signal before the press was over"));
+    const files::Json kept = files::read_json(log + "/performance.json");
+    CHECK(contains(kept["notes"].dump(), "stopped by a signal"));
+    const std::string ticks = files::read_text(log + "/ticks.tsv");
+    CHECK(std::count(ticks.begin(), ticks.end(), '\n') == 1 + kept["ticks"].get<std::ptrdiff_t>());
 }
 
 TEST_CASE("tangible run: a replay takes the fidelity and the rate of the run, and says when it is told others") {

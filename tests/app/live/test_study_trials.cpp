@@ -147,12 +147,24 @@ TEST_CASE("live: a surface or a trial that nobody touches in its time is repeate
     }
 }
 
-TEST_CASE("live: a trial whose time goes by while the app sleeps is repeated, and counts for nothing") {
+TEST_CASE(
+    "live: a trial whose time goes by while the app sleeps or is out of sight is repeated, and counts for nothing") {
     const TemporaryFolder folder;
     StudyDesk desk(folder, R"("time_limit_s": 0.3, "repeats": 2)");
     REQUIRE(trial_goes_on(desk.run()));
     desk.press();
-    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    const auto wait_ms = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+    const auto out_of_sight = [&](bool hidden) { note_sight(hidden, now_of(desk.app, desk.window), desk.app); };
+    SUBCASE("sleeps") { wait_ms(2500); }
+    SUBCASE("out of sight, and back at once after the end") {
+        out_of_sight(true);
+        wait_ms(400);
+        out_of_sight(false);
+    }
+    SUBCASE("out of sight, where frames go on") {
+        out_of_sight(true);
+        wait_ms(400);
+    }
     desk.step();
     REQUIRE(at<step::Device>(desk.run()));
     CHECK(std::get<step::Device>(desk.run().step).left);
@@ -161,6 +173,40 @@ TEST_CASE("live: a trial whose time goes by while the app sleeps is repeated, an
     CHECK(contains(events, "\tinterrupted\t"));
     CHECK_FALSE(contains(events, "\tfinish\t"));
     CHECK_FALSE(contains(events, "\tdevice_gone\t"));
+}
+
+TEST_CASE("live: a trial that was out of sight and comes back before its end is finished by its limit") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("time_limit_s": 0.3, "repeats": 2)");
+    REQUIRE(trial_goes_on(desk.run()));
+    note_sight(true, now_of(desk.app, desk.window), desk.app);
+    note_sight(false, now_of(desk.app, desk.window), desk.app);
+    desk.press();
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    desk.step();
+    CHECK(desk.run().progress.finished.size() == 1);
+}
+
+TEST_CASE("live: what is kept beside a trial is of that trial alone, since the one before may be another person's") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("repeats": 2)");
+    for (int trial = 1; trial <= 2; ++trial) {
+        if (!trial_goes_on(desk.run())) desk.step(BeginStep{});
+        REQUIRE(trial_goes_on(desk.run()));
+        for (int k = 0; k < trial; ++k) desk.press();
+        act(Action::mark, desk.window, desk.app);
+        desk.app.frames += 100;  // drawn meanwhile
+        desk.finish();
+    }
+    for (int trial = 1; trial <= 2; ++trial) {
+        const Json kept = read_json(
+            folder / ("log/sub-01/beh/sub-01_task-palpation_run-0" + std::to_string(trial) + "_performance.json"));
+        CHECK(kept["trials"].size() == 1);
+        CHECK(kept["trials"][0]["marks"].size() == 1);
+        CHECK(kept["samples"] == 1 + 2 * trial + 2);  // where the tissue is, the presses, mark and finish
+        CHECK(kept["frames"] == 100);
+    }
+    CHECK(result_of(desk.app)["trials"].size() >= 2);
 }
 
 TEST_CASE("live: finishing a study's trial that nobody has touched asks to press first, also in practice") {
