@@ -119,7 +119,8 @@ void draw_test_area(const PanelArea& area, const Gui& gui, const std::vector<Dot
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     draw.AddRectFilled(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), IM_COL32(40, 44, 48, 255));
     draw.AddRect(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), kPale);
-    draw.AddText(ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()), kInk, words::kTryHere);
+    draw.AddText(ImGui::GetFont(), ImGui::GetFontSize(), ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()),
+                 kInk, words::kTryHere, nullptr, area.width() - 4.0f * gui.mm());
     for (const Dot& dot : dots) {
         const float level = std::isfinite(dot.pressure) ? std::clamp(dot.pressure, 0.0f, 1.0f) : 0.0f;
         draw.AddCircle(ImVec2(dot.x_px, dot.y_px), (0.4f + 5.0f * level) * gui.mm(), dot.touching ? kLag : kPale, 16,

@@ -177,7 +177,8 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     draw.Flags = flags;
     draw.AddRect(ImVec2(low.x, f.low.y), ImVec2(low.x + width_px, f.high.y), kPale);
     const float text_px = 0.8f * ImGui::GetFontSize();
-    const double step = figures::tic_step(values.high - values.low, static_cast<double>(height / (5.0f * text_px)));
+    const float tics = std::max(3.0f, height / (4.0f * text_px));  // a bar without numbers tells nothing
+    const double step = figures::tic_step(values.high - values.low, static_cast<double>(tics));
     const double near = 1e-6 * (values.high - values.low);
     for (double v = std::ceil((values.low - near) / step) * step; v <= values.high + near; v += step) {
         const float y = f.high.y - height * static_cast<float>((v - values.low) / (values.high - values.low));
@@ -230,6 +231,11 @@ void draw_pin(ImVec2 at, std::size_t number, float mm, ImDrawList& draw) {
     draw.AddText(ImVec2(at.x - 0.5f * size.x, at.y - 0.5f * size.y), kDark, text.c_str());
 }
 
+// A title begins at `x`, or further left where it would go over `right`, but never left of `least`.
+void draw_title(float least, float x, float right, float y, const char* text, ImDrawList& draw) {
+    draw.AddText(ImVec2(std::clamp(right - ImGui::CalcTextSize(text).x, least, x), y), kInk, text);
+}
+
 std::string title_of(const MapBrowser& browser) {
     const std::string depth =
         ", " +
@@ -267,7 +273,7 @@ std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2
                              ImVec2(corner.x + size_px.x - bar_px - 3.0f * mm - 3.0f * text_px,
                                     corner.y + size_px.y - 2.2f * text_px - 2.0f * mm));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    draw.AddText(ImVec2(f.low.x, f.low.y - text_px - mm), kInk, title_of(browser).c_str());
+    draw_title(corner.x, f.low.x, f.high.x + 2.0f * mm, f.low.y - text_px - mm, title_of(browser).c_str(), draw);
     const Values values = values_of(browser);
     draw_cells(values, f, mm, draw);
     draw_axes(map, f, mm, draw);
@@ -342,7 +348,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
     const auto px = [&](float x_mm, float y_N) {
         return ImVec2(low.x + (high.x - low.x) * x_mm / deepest_mm, high.y - (high.y - low.y) * y_N / (1.08f * most_N));
     };
-    draw.AddText(ImVec2(low.x, corner.y), kInk, words::kForceOverDepth);
+    draw_title(corner.x, low.x, high.x + 2.0f * mm, corner.y, words::kForceOverDepth, draw);
     const double step_N = figures::tic_step(1.08 * static_cast<double>(most_N),
                                             static_cast<double>((high.y - low.y) / (3.0f * small_px)));
     for (double v = 0.0; v <= 1.08 * static_cast<double>(most_N); v += step_N) {

@@ -143,9 +143,18 @@ struct Areas {
 
 Areas areas_of(float width, float height, float mm_px) {
     Areas out;
-    if (width >= height) {
-        const float column = std::min(64.0f * mm_px, 0.3f * width);
-        const float split = column + std::min(0.6f * (width - column), height);
+    const float column = std::min(64.0f * mm_px, 0.3f * width);
+    const float split = column + std::min(0.6f * (width - column), height);
+    const float matrix_height = 0.62f * height;  // where the curves are below
+    const auto side_px = [&](float room, float high) { return std::min(room - 28.0f * mm_px, high - 15.0f * mm_px); };
+    const bool larger_above = side_px(width - column, matrix_height) > 1.15f * side_px(split - column, height);
+    if (width >= height && larger_above) {
+        const float middle = 0.5f * (column + width);
+        out.controls = {0.0f, 0.0f, column, height};
+        out.matrix = {column, 0.0f, width, matrix_height};
+        out.curves = {column, matrix_height, middle, height};
+        out.facts = {middle, matrix_height, width, height};
+    } else if (width >= height) {
         const float half = 0.5f * height;
         out.controls = {0.0f, 0.0f, column, height};
         out.matrix = {column, 0.0f, split, height};

@@ -57,7 +57,8 @@ void draw_plot_axes(const Plot& plot, const PlotTitles& titles, float mm, ImDraw
                    draw);
     }
     draw.AddRect(ImVec2(a.x0, a.y0), ImVec2(a.x1, a.y1), kPale);
-    draw.AddText(ImVec2(a.x0, a.y0 - 2.3f * text_px), kInk, titles.top);
+    const float room_px = a.x1 + text_px - ImGui::CalcTextSize(titles.top).x;  // else the title's end is cut off
+    draw.AddText(ImVec2(std::clamp(room_px, a.x0 - 2.9f * text_px, a.x0), a.y0 - 2.3f * text_px), kInk, titles.top);
     small_text(ImVec2(a.x0 - 2.2f * text_px, a.y0 - 1.1f * text_px), titles.y, draw);
     small_text(ImVec2(a.x1 - kSmall * ImGui::CalcTextSize(titles.x).x, a.y1 + 1.4f * mm + small_px), titles.x, draw);
 }

@@ -88,7 +88,7 @@ test('a pairing that has ended is told, the code can be typed again, and a study
     desk.token = 'of-another-desk';
     await page.goto(`${desk.url}?protocol=effects&participant=1`);
     await started(page);
-    await until('told', async () => (await report(page)).problems.some((text) => text.includes('is not paired with the desk')));
+    await until('told', async () => (await report(page)).problems.some((text) => text.includes('was not paired with the desk')));
     await page.evaluate(() => palpaTrials.open());
     assert.ok(await page.isVisible('#code'));
     assert.match(await page.textContent('#trials-state'), /Pair it again/);

@@ -155,6 +155,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
                           {2560, 1600, kTablet_px_per_mm, false, true},
                           {1600, 2560, kTablet_px_per_mm, false},
                           {1024, 600, 6.63, true},              // 7 inch, measured
+                          {1024, 768, 6.3, false},              // page of a tablet, 160 px per inch
                           {800, 1280, 7.4, false, false, 140},  // 8 inch, measured
                           {1280, 800, kMissing, false, false, 140},
                           {200, 100, kMissing, false}};
@@ -163,6 +164,8 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(session, trial, c, "trial", screen);
         if (c.width_px < 600) continue;  // panels need some room
         check_case(stopped, trial, c, "paused", screen);
+        check_case(session, devices, c, "devices", screen);
+        check_case(session, maps, c, "maps", screen);
         if (std::isfinite(c.px_per_mm) && c.px_per_mm < kTablet_px_per_mm) continue;  // other panels scroll there
         check_case(marked, asked, c, "asked", screen);
         check_case(session, menu, c, "menu", screen);
@@ -175,10 +178,8 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(done, guided_result, c, "guided-result", screen);
         check_case(session, cost, c, "cost", screen);
         check_case(session, scale, c, "scale", screen);
-        check_case(session, devices, c, "devices", screen);
         check_case(session, calibrate, c, "calibrate", screen);
         check_case(session, calibrating, c, "calibrating", screen);
-        check_case(session, maps, c, "maps", screen);
         check_case(done, reveal, c, "reveal", screen);
     }
 }
