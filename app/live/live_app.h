@@ -234,9 +234,9 @@ void load_study(const RunOptions& options, App& app);  // throws InputError or s
 // Carries out what was asked for in a step and its consequences, and ends a trial whose time is over.
 void follow_study(const std::optional<StudyWish>& wish, platform::Window& window, const Gui& gui, App& app);
 void finish_study_trial(platform::Window& window, App& app);
-// Interrupts a pen's trial that is to be finished, so that it is repeated, if the pen's pressure has never varied: short taps of
-// a pen without a sensor look so. Returns true if it did.
-bool repeat_if_pen_unproven(platform::Window& window, App& app);
+// Interrupts a trial that is to be finished, so that it is repeated, if its pen's pressure has never varied (short taps of a pen
+// without a sensor look so) or its touches gave no force for want of a level. Returns true if it did.
+bool repeat_if_unproven(platform::Window& window, App& app);
 // Whether what leads is the motion on a device, not that on the screen.
 bool felt_elsewhere(const App& app);
 // Returns when the time limit ends the present trial; infinity: never.

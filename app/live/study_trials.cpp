@@ -68,10 +68,18 @@ bool may_begin(const App& app) {
     return is_device_here(app) && run.pen != PenVerdict::no_pressure && run.devices_note.empty();
 }
 
-// Why a trial says nothing about the person: its device is gone, its pen turned out to measure no pressure, nothing was
-// touched in its time, or its time went by while the app was out of sight or the computer slept.
-enum class Interruption { device_gone, no_pressure, untouched, overslept };
+// Why a trial says nothing about the person: its device is gone, its pen turned out to measure no pressure, its touches lack
+// the level that the profile reads, nothing was touched in its time, or its time went by while the app was out of sight or
+// the computer slept.
+enum class Interruption { device_gone, no_pressure, no_level, untouched, overslept };
 constexpr double kOverslept_s = 2.0;  // longer than any frame
+
+// Touches without a level give no force. A device may report it late in a touch, so that `few` may lack it.
+bool gives_no_force(const App& app, std::int64_t few) {
+    const scene::State& state = app.session.state;
+    return state.counters.without_level > few && !(state.extremes.force_N > 0.0);
+}
+constexpr std::int64_t kFewWithoutLevel = 30;
 
 // Interrupts such a trial. It is repeated.
 void interrupt_study_trial(Interruption why_interrupted, platform::Window& window, App& app) {
@@ -79,13 +87,15 @@ void interrupt_study_trial(Interruption why_interrupted, platform::Window& windo
         session::note_event("device_gone", now_of(app, window), app.session);
     if (why_interrupted == Interruption::no_pressure)
         session::note_event("no_pressure", now_of(app, window), app.session);
+    if (why_interrupted == Interruption::no_level) session::note_event("no_level", now_of(app, window), app.session);
     app.asked.reset();
     StudyRun& run = *study_of(app.doing);
     const std::string why = close_trial(window, app);
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
-    if (why_interrupted != Interruption::untouched) return wait_for_device(true, run);
-    repeat_untouched(run);
+    if (why_interrupted == Interruption::untouched) return repeat_untouched(run);
+    if (why_interrupted == Interruption::no_level) return repeat_without_level(run);
+    wait_for_device(true, run);
 }
 
 // Gives the keeper typed trials and answers too; `keeping_since_s` stays set until it has stored them.
@@ -139,8 +149,12 @@ void load_study(const RunOptions& options, App& app) {
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
-bool repeat_if_pen_unproven(platform::Window& window, App& app) {
+bool repeat_if_unproven(platform::Window& window, App& app) {
     StudyRun& run = *study_of(app.doing);
+    if (gives_no_force(app, 0)) {
+        interrupt_study_trial(Interruption::no_level, window, app);
+        return true;
+    }
     note_pen(app, run);
     if (run.pen == PenVerdict::ready || run.pen == PenVerdict::not_needed) return false;
     run.pen_must_vary = true;
@@ -206,6 +220,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     if (!trial_goes_on(run)) return;
     note_pen(app, run);
     if (run.pen == PenVerdict::no_pressure) return interrupt_study_trial(Interruption::no_pressure, window, app);
+    if (gives_no_force(app, kFewWithoutLevel)) return interrupt_study_trial(Interruption::no_level, window, app);
     if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
     if (!is_device_here(app) || devices_failed(window.now_s(), app))
         return interrupt_study_trial(Interruption::device_gone, window, app);

@@ -308,7 +308,7 @@ void act(platform::Action action, platform::Window& window, App& app) {
         app.notices.note = words::kTouchFirst;  // nothing that was not felt counts as missed
         return;
     }
-    if (finish && repeat_if_pen_unproven(window, app)) return;
+    if (finish && repeat_if_unproven(window, app)) return;
     const bool clock = action == platform::Action::pause || action == platform::Action::resume;
     if (clock && study != nullptr) return;                // its limits are the protocol's
     if (!clock && app.session.trial.paused_at_s) return;  // nothing is done while the clock is stopped

@@ -257,15 +257,21 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
     const char* text = no_pressure ? words::kDeviceNoPressure
                        : step.here ? words::kDeviceIsBack
                                    : words::kDeviceMissing;
-    title(step.untouched && step.here ? words::kNothingTouched : words::filled(text, {device}));
+    title(step.no_level && step.here    ? words::kNothingFelt
+          : step.untouched && step.here ? words::kNothingTouched
+                                        : words::filled(text, {device}));
+    if (step.no_level) {
+        const calibration::Profile& profile = due_scene(run).plan->profile;
+        warning_paragraph(words::filled(words::kWithoutLevel, {std::string(name_of(profile.level)), profile.id}));
+    }
     if (step.left) paragraph(words::kTrialInterrupted);
     if (step.untouched) paragraph(words::kTimeOverUntouched);
     if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
         warning_paragraph(words::kNeedsPressure);
         paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
-    } else if (!step.here) {
-        if (run.devices_note.empty()) warning_paragraph(words::filled(words::kTrialWaits, {device}));
+    } else if (!step.here || step.no_level) {
+        if (!step.here && run.devices_note.empty()) warning_paragraph(words::filled(words::kTrialWaits, {device}));
         paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
     }
     if (step.here && run.pen == PenVerdict::untried) paragraph(words::kPenUntried);

@@ -353,6 +353,8 @@ void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false
 
 void repeat_untouched(StudyRun& run) { enter(step::Device{false, false, false, true}, run); }
 
+void repeat_without_level(StudyRun& run) { enter(step::Device{false, false, true, false, true}, run); }
+
 void give_feedback(int found, int missed, int false_marks, StudyRun& run) {
     enter(step::Feedback{found, found + missed, false_marks}, run);
 }

@@ -77,6 +77,7 @@ void same_person(bool is, StudyRun& run);
 void submit_answers(const std::vector<std::string>& answers, StudyRun& run);  // of questions and ratings
 void begin_step(StudyRun& run);                                               // see BeginStep
 void wait_for_device(bool left, StudyRun& run);  // instead of a trial; left: the device went during it
+void repeat_without_level(StudyRun& run);        // the touches of the trial gave no force
 void repeat_untouched(StudyRun& run);            // the trial's time was over before anything was touched
 void trial_finished(StudyRun& run);              // the trial is on the disk
 // The same for practice, which tells what was found.

@@ -58,13 +58,23 @@ bool touches(const platform::Sample& sample, double level) {
     return (sample.phase == platform::Phase::down || sample.phase == platform::Phase::move) && level > 0.0;
 }
 
+namespace {
+
+// An area is measured by widths, so that the greatest one may come out by a rounding error above its range.
+double without_rounding(double level, const LevelRange& range) {
+    const double inside = std::clamp(level, range.lowest, range.highest);
+    return std::abs(level - inside) <= 1e-9 * (range.highest - range.lowest) ? inside : level;
+}
+
+}  // namespace
+
 void take_levels(const std::vector<platform::Sample>& samples, Recording& recording) {
     const Profile& profile = recording.arguments.level;
     for (const platform::Sample& sample : samples) {
         if (sample.phase == platform::Phase::ui || sample.tool == platform::Tool::mouse)
             // a mouse has no sensor
             continue;
-        const double level = level_of(profile, sample);
+        const double level = without_rounding(level_of(profile, sample), recording.arguments.options.range);
         if (sample.phase != platform::Phase::up && sample.phase != platform::Phase::hover &&
             sample.phase != platform::Phase::cancel && std::isnan(level)) {
             ++recording.without_level;

@@ -149,6 +149,18 @@ TEST_CASE("record: what a scale shows is typed in while the pen is held still") 
     }
 }
 
+TEST_CASE("record: the greatest contact area is in its range, whatever its width is rounded to") {
+    const TemporaryFolder folder;
+    const std::string fifo = (folder / "levels").string();
+    const Called record = shell("mkfifo " + fifo + "; (for i in $(seq 200); do echo 1.0000; sleep 0.01; done) >" +
+                                fifo + " & (sleep 1; echo 12; sleep 2) | " + kRecord + "-o " + (folder / "s").string() +
+                                " --sensor typed --level contact_area --levels " + fifo + " --json");
+    CAPTURE(record.err);
+    REQUIRE(record.status == 0);
+    CHECK_FALSE(contains(record.err, "no point follows"));
+    CHECK(parse_json(record.out, "stdout")["points"].get<int>() >= 1);
+}
+
 TEST_CASE("record: a pipe of levels that nobody writes into does not keep the session from its end") {
     const TemporaryFolder folder;
     const std::string fifo = (folder / "levels").string();

@@ -209,6 +209,29 @@ TEST_CASE("live: what is kept beside a trial is of that trial alone, since the o
     CHECK(result_of(desk.app)["trials"].size() >= 2);
 }
 
+TEST_CASE("live: a study's trial whose touches lack what the profile reads is repeated, and counts for nothing") {
+    const TemporaryFolder folder;
+    StudyDesk desk(folder, R"("repeats": 2)");
+    REQUIRE(trial_goes_on(desk.run()));
+    scene::Plan plan = *desk.app.session.plan;
+    plan.profile.level = calibration::LevelField::contact_area;  // the pen of these tests has none
+    plan.profile.full_contact_area_px2 = 4000.0;
+    desk.app.session.plan = std::make_shared<const scene::Plan>(std::move(plan));
+    desk.press();
+    SUBCASE("at its end, however few they are") { desk.finish(); }
+    SUBCASE("as soon as they are many") {
+        for (int k = 0; k < 40; ++k) desk.press();
+        desk.step();
+    }
+    REQUIRE(at<step::Device>(desk.run()));
+    CHECK(std::get<step::Device>(desk.run().step).no_level);
+    CHECK(desk.run().progress.finished.empty());
+    const std::string events = read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
+    CHECK(contains(events, "\tno_level\t"));
+    CHECK(contains(events, "\tinterrupted\t"));
+    CHECK_FALSE(contains(events, "\tfinish\t"));
+}
+
 TEST_CASE("live: finishing a study's trial that nobody has touched asks to press first, also in practice") {
     for (const char* task : {R"("repeats": 2)", R"("repeats": 2, "practice": {"trials": 1})"}) {
         CAPTURE(task);
