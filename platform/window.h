@@ -88,6 +88,7 @@ class Window {
     // poll() has not returned yet.
     void end_presses();
 
+    bool hidden() const;  // minimised, or taken from the screen otherwise; never in a browser, whose page knows it
     bool close_requested() const;
     // Forgets that the person asked to close the window. Returns false if the system itself ends the program, which
     // cannot be refused.

@@ -345,6 +345,11 @@ void Live::out_of_sight(bool hidden) {
     it.app.keeper->keep(*it.app.session.files, false);
 }
 
+void Live::follow_window() {
+    const bool hidden = impl_->window->hidden();
+    if (hidden != impl_->app.hidden) out_of_sight(hidden);
+}
+
 void Live::renew_drawing() {
     impl_->gui->renew_drawing();
     impl_->tissue.emplace();
@@ -397,8 +402,7 @@ std::optional<files::Json> run_live(const RunOptions& options) {
     if (!options.log.empty() && options.protocol.empty()) study::check_no_study(options.log);
     Live live(options);
     if (!live.ready()) return std::nullopt;
-    while (live.turn(Live::Draw::when_due)) {
-    }
+    while (live.turn(Live::Draw::when_due)) live.follow_window();
     return live.close();
 }
 

@@ -56,6 +56,7 @@ class Live {
     // To be called when the window goes out of sight, or comes back: ends the presses, logs the gap, and gives the
     // keeper the trial so far.
     void out_of_sight(bool hidden);
+    void follow_window();  // on a desk: does so when the window is minimised, or back
 
     // Returns the field that takes letters now, for a screen with an on-screen keyboard; type_instead() replaces its
     // text.

@@ -107,13 +107,10 @@ void follow_keeper(double now_s, App& app) {
     if (run.unkept_answers) app.keeper->keep_answers(run.directory, run.code);
     run.unkept_answers = false;
     app.keeper->participant(run.code);
-    const bool told = run.keeping_since_s && !run.warnings.empty();
-    if (!app.keeper->ready()) {
-        if (!run.keeping_since_s) run.keeping_since_s = now_s;
-    } else {
+    if (app.keeper->ready())
         run.keeping_since_s.reset();
-        if (told) app.notices.problems.clear();  // the problem is solved
-    }
+    else if (!run.keeping_since_s)
+        run.keeping_since_s = now_s;
     run.warnings = app.notices.problems;
     if (at<step::Done>(run) || at<step::Withdrawn>(run)) run.where = app.keeper->where(run.code);
 }

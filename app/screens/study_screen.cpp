@@ -154,7 +154,7 @@ void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answe
     constexpr float kNumber_mm = 40.0f, kWords_mm = 120.0f;
     const float width_px = std::min((item.from ? kNumber_mm : kWords_mm) * gui.mm(), ImGui::GetContentRegionAvail().x);
     ImGui::SetNextItemWidth(width_px);
-    char text[120];
+    char text[1000];
     std::snprintf(text, sizeof text, "%s", answer.c_str());
     const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
     if (focus) ImGui::SetKeyboardFocusHere();
@@ -162,6 +162,7 @@ void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answe
     // Enter takes the focus from the field, which an answer that is refused needs again
     if (is_deactivated_by_enter() && !is_answer(item, answer)) ImGui::SetKeyboardFocusHere(-1);
     if (item.from) paragraph(scale_text(item));
+    if (answer.size() + 4 > sizeof text) warning_paragraph(words::kAnswerFull);  // a letter may have four bytes
     // the field scrolls; what it does not hold can still be read
     if (ImGui::CalcTextSize(answer.c_str()).x > width_px - 4.0f * gui.mm()) paragraph(answer);
 }

@@ -613,6 +613,7 @@ inline constexpr const char* kDigitTooEarly =
 inline constexpr const char* kDeviceMissing = "The {} is not connected";
 inline constexpr const char* kDeviceIsBack = "The {} is connected";
 inline constexpr const char* kDeviceNoPressure = "The {} does not measure pressure";
+inline constexpr const char* kAnswerFull = "No more fits into this answer.";
 inline constexpr const char* kNothingFelt = "Nothing could be felt";
 inline constexpr const char* kNeedsPressure =
     "This trial needs a pen that measures pressure. Press with it anywhere, lightly, then hard; as soon as its "
@@ -741,6 +742,11 @@ inline constexpr const char* pageOpenToAll = "The desk accepts logs without a co
 inline constexpr const char* pageStudyUnpaired =
     "This tablet was not paired with the desk when the study was opened: it is the one stored here, or the app's. "
     "Pair it in Menu, Trials, and open the study again.";
+inline constexpr const char* pageStudyUnstored =
+    "This browser stores nothing (a private window?): a reload would forget who is here and what is done.";
+inline constexpr const char* pageStudyCut =
+    "The desk has this study but did not send all of it: the study is the one stored here, or the app's. Open it "
+    "again.";
 inline constexpr const char* pageNotPaired = "Not paired with a desk.";
 inline constexpr const char* pageMayDelete =
     "The browser may delete stored trials when space is short: send or export them, or put Palpa on the home screen.";

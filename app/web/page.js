@@ -139,7 +139,9 @@ var Module = {
     // trials of earlier days are known before the first one of today
     preRun: [() => {
         addRunDependency('trials');
-        palpaTrials.start(palpaPage.openTrials).then(() => palpaStudies.start())
-            .then(() => removeRunDependency('trials'), (error) => palpaPage.fail(error.message));
+        palpaTrials.start(palpaPage.openTrials).then(() => palpaStudies.start()).then(() => {
+            if (palpaTrials.protocol() !== '' && !palpaTrials.stores()) palpaPage.refuse(palpaWords.studyUnstored);
+            else removeRunDependency('trials');
+        }, (error) => palpaPage.fail(error.message));
     }],
 };

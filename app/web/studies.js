@@ -66,9 +66,9 @@ const palpaStudies = (() => {
         const protocol = `protocols/${name}.json`;
         const paths = await atDesk();
         if (!paths.has(protocol)) return false;
-        const found = await collect(protocol, paths, askFile);
+        const found = await collect(protocol, paths, askFile).catch(() => { throw {status: 'cut'}; });
         const entries = [...found].map(([path, bytes]) => ({path, bytes, files: path === protocol ? [...found.keys()] : kept.get(path)?.files}));
-        await palpaTrials.request('readwrite', (store) => { for (const entry of entries) store.put(entry); }, ['files']);
+        await palpaTrials.request('readwrite', (store) => { for (const entry of entries) store.put(entry); }, ['files']).catch(() => {}); // full: for this page
         for (const entry of entries) kept.set(entry.path, entry);
         return true;
     };
@@ -82,6 +82,7 @@ const palpaStudies = (() => {
         const name = palpaTrials.protocol();
         if (name) await fetchStudy(name).catch(({status}) => { // what is kept, or of the app
             if (status === 401) palpaTrials.tell(palpaWords.studyUnpaired);
+            if (status === 'cut') palpaTrials.tell(palpaWords.studyCut);
         });
     };
 

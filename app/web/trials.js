@@ -293,6 +293,7 @@ const palpaTrials = (() => {
             await save(trial, files, isNew);
         } catch (error) {
             unsaved.set(name, {trial, files, isNew});
+            if (finished) solve(''); // what is said of the whole trial replaces it
             tellOf(name, palpaFilled(palpaWords.notStored, name, whyNot(error)));
         } finally {
             --writing;
@@ -511,6 +512,7 @@ const palpaTrials = (() => {
     };
 
     return {
+        stores: () => database !== null,
         start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
         ready: () => writing === 0 && inDanger() === 0,
         keepsDesigns: () => unstored.size === 0,

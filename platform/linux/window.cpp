@@ -104,6 +104,8 @@ double Window::keyboard_x_px() const { return impl_->pointers.keyboard.x_px; }
 
 double Window::keyboard_y_px() const { return impl_->pointers.keyboard.y_px; }
 
+bool Window::hidden() const { return (SDL_GetWindowFlags(sdl()) & (SDL_WINDOW_HIDDEN | SDL_WINDOW_MINIMIZED)) != 0; }
+
 bool Window::close_requested() const { return impl_->pointers.close_requested || impl_->pointers.quit_requested; }
 
 bool Window::stay_open() {

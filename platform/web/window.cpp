@@ -81,6 +81,7 @@ void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px
     set_keyboard_area(browser::now_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
 }
 
+bool Window::hidden() const { return false; }
 bool Window::close_requested() const { return false; }
 bool Window::stay_open() { return true; }
 void Window::present() {}

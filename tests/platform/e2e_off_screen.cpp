@@ -102,6 +102,16 @@ TEST_CASE("off screen: a press that a panel owns stays silent until its release"
     CHECK(samples.empty());
 }
 
+TEST_CASE("off screen: a window knows whether it is minimised or hidden") {
+    Window window(off_screen());
+    SDL_ShowWindow(window.sdl());
+    CHECK_FALSE(window.hidden());
+    SDL_HideWindow(window.sdl());
+    CHECK(window.hidden());
+    SDL_ShowWindow(window.sdl());
+    CHECK_FALSE(window.hidden());
+}
+
 TEST_CASE("off screen: closing is reported") {
     Window window(off_screen());
     CHECK_FALSE(window.close_requested());

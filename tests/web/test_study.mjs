@@ -333,6 +333,37 @@ const trialWithoutRoom = async (browser, desk, offline) => {
     await page.waitForTimeout(800);
 };
 
+test('a full storage: the study that is asked for comes from the desk all the same', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await page.addInitScript(() => {
+        for (const way of ['put', 'add']) IDBObjectStore.prototype[way] = () => { throw new DOMException('full', 'QuotaExceededError'); };
+    });
+    await open(browser, desk.url, '?protocol=twice&participant=5');
+    await at(page, 'instructions');
+}, {protocols: {twice: {...tiny, repeats: 2}}}));
+
+test('a browser that stores nothing is refused a study, in words', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await page.addInitScript(() => { IDBFactory.prototype.open = () => { throw new Error('refused'); }; });
+    await page.goto(`${desk.url}?protocol=twice&participant=5`);
+    await page.waitForFunction(() => document.getElementById('message-text').textContent.includes('This browser stores nothing'));
+    await page.click('#leave');
+    await started(page); // the app without a study
+    assert.ok((await report(page)).problems.some((text) => text.includes('cannot store trials (refused)')));
+}, {protocols: {twice: {...tiny, repeats: 2}}}));
+
+test('the desk does not send all of a study: said for as long as it is on the screen', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await page.addInitScript(() => {
+        const real = window.fetch;
+        window.fetch = (what, ...rest) => String(what).includes('files/scenes/') ? Promise.reject(new Error('cut')) : real(what, ...rest);
+    });
+    await page.goto(`${desk.url}?protocol=effects&participant=5`);
+    await started(page);
+    await frames(page, 60);
+    assert.ok((await report(page)).problems.some((text) => text.includes('did not send all of it')));
+}));
+
 test('a full storage: after a reload the study does not ask again for a trial that the desk has', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;
     await trialWithoutRoom(browser, desk, false);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <doctest/doctest.h>
 
+#include "files/text.h"
 #include "tests/app/live/desk.h"
 #include "tests/app/screens/typing.h"
 #include "tests/temporary_folder.h"
@@ -76,6 +77,28 @@ TEST_CASE("study screen: the first question takes the keys at once, and Enter en
     tap(desk.window, SDLK_RETURN);
     live_frames(desk, 5);
     CHECK_FALSE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+}
+
+TEST_CASE("study screen: an answer in words may be long") {
+    const TemporaryFolder folder;
+    files::write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 4, "order": "fixed",
+        "conditions": [{"id": "pad", "modality": "touchpad", "scene": ")" PALPA_SOURCE_DIR
+                                                    R"(/assets/scenes/default.json"}],
+        "repeats": 1, "demographics": [{"id": "why", "text": "Why do you palpate?"}]})");
+    Desk desk("");
+    desk.keeper.busy = false;
+    desk.app.doing = open_study_run(read_protocol(folder / "p.json"), folder / "log", "p1");
+    live_frames(desk, 3);
+    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    desk.app.view.study.answers = {""};
+    std::string said;
+    for (int k = 0; k < 300; ++k) {
+        said.push_back(static_cast<char>('a' + k % 26));
+        type(desk.window, said.back());
+        live_frames(desk, 1);
+    }
+    live_frames(desk, 6);
+    CHECK(desk.app.view.study.answers.at(0) == said);
 }
 
 TEST_CASE("study screen: an age that is refused keeps the keys, so that it can be mended at once") {
