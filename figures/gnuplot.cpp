@@ -45,7 +45,7 @@ bool draw(const std::string& command, const std::filesystem::path& said) {
 }
 
 bool is_installed() { return run("command -v gnuplot >/dev/null 2>&1"); }
-constexpr const char* kMissing = "gnuplot is not installed (package gnuplot-nox)";
+constexpr const char* kMissing = "gnuplot cannot be started (is it installed? package gnuplot-nox)";
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
 

@@ -60,6 +60,14 @@ StiffnessRun stiffness_of(const std::function<double(double depth_m)>& law_N, st
     run.error_share = line[0] / run.wanted_N_per_m - 1.0;
     run.hysteresis_N = std::abs(line[2]);
     run.force_at_0_N = line[1];
+    double squares = 0.0, pressing = 0.0;
+    for (const StrokeRow& row : rows) {
+        if (!(row.depth_m > 0.0)) continue;
+        const double off_N = row.sensor_N - law_N(row.depth_m);
+        squares += off_N * off_N;
+        pressing += 1.0;
+    }
+    run.force_rms_N = std::sqrt(squares / pressing);
     run.rows = std::move(rows);
     return run;
 }

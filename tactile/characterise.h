@@ -16,6 +16,7 @@ struct StiffnessRun {
     double error_share = 0.0;       // rendered / wanted - 1
     double hysteresis_N = 0.0;      // half the distance of the lines of pressing and releasing
     double force_at_0_N = 0.0;      // of the line halfway between them
+    double force_rms_N = 0.0;       // measured force off the law's, of all readings in the tissue, rms
     std::vector<StrokeRow> rows;
 };
 

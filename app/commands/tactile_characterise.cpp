@@ -161,6 +161,7 @@ files::Json run_json(const tactile::StiffnessRun& run, const RigResult& result) 
             {"rendered_N_per_mm", 1e-3 * run.rendered_N_per_m},
             {"error_percent", 100.0 * run.error_share},
             {"hysteresis_N", run.hysteresis_N},
+            {"force_rms_N", run.force_rms_N},
             {"loop_delay_ms", 1e3 * result.loop_delay_s},
             {"link", link_json(result)}};
 }
@@ -180,15 +181,16 @@ void write_results(const std::vector<tactile::StiffnessRun>& runs, const Charact
 }
 
 void print_runs(const std::vector<tactile::StiffnessRun>& runs, const files::Json& json) {
-    std::printf("wanted   rendered   error    hysteresis\n");
+    std::printf("wanted   rendered   error    hysteresis  off the wanted force (rms)\n");
     for (const tactile::StiffnessRun& run : runs) {
-        std::printf("%.3g N/mm  %.4f N/mm  %+5.1f %%  +-%.3f N\n", 1e-3 * run.wanted_N_per_m,
-                    1e-3 * run.rendered_N_per_m, 100.0 * run.error_share, run.hysteresis_N);
+        std::printf("%.3g N/mm  %.4f N/mm  %+5.1f %%  +-%.3f N  %.3f N\n", 1e-3 * run.wanted_N_per_m,
+                    1e-3 * run.rendered_N_per_m, 100.0 * run.error_share, run.hysteresis_N, run.force_rms_N);
     }
     const bool curved = std::any_of(runs.begin(), runs.end(), [](const tactile::StiffnessRun& run) {
         return std::abs(run.wanted_N_per_m / run.asked_N_per_m - 1.0) > kCurved;
     });
     if (curved) std::printf("wanted: the same line through the tissue's own force, which is not straight\n");
+    std::printf("the line is of the middle nine tenths of the depth at the usual speed, the rms of all readings\n");
     std::printf("mean error %.2f %%, worst hysteresis +-%.3f N%s\n", json["mean_error_percent"].get<double>(),
                 json["worst_hysteresis_N"].get<double>(),
                 json["simulated"].get<bool>() ? " (SIMULATED arm and hand)" : "");

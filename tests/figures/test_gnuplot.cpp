@@ -22,7 +22,7 @@ TEST_CASE("gnuplot: a kept script is drawn in its own folder, once for each kind
     files::write_text_atomically(folder / "a.gp", "set print kind . '.txt'\nprint 'drawn'\n");
     const std::string trouble = draw_script(folder / "a.gp", "a.csv is kept");
     if (!test::has_gnuplot()) {
-        CHECK(trouble.find("gnuplot is not installed") == 0);
+        CHECK(trouble.find("gnuplot cannot be started") == 0);
         CHECK(trouble.find("a.csv is kept") != std::string::npos);
         return;
     }

@@ -93,6 +93,7 @@ TEST_CASE("characterise: line, offset and hysteresis of readings that are known"
     CHECK(run.error_share == close_to(-0.2));
     CHECK(run.hysteresis_N == close_to(0.25));
     CHECK(run.force_at_0_N == close_to(0.3));
+    CHECK(run.force_rms_N == close_to(std::sqrt(0.09 - 0.3 + 1.0 / 3.0 + 0.0625)).epsilon(1e-3));
     CHECK_THROWS_WITH_AS(stiffness_of([](double) { return 0.0; }, {}), doctest::Contains("did the hand press"),
                          std::runtime_error);
 }

@@ -242,7 +242,7 @@ TEST_CASE("command maps plot: without gnuplot a message says what is missing") {
     const TemporaryFolder empty;
     std::filesystem::create_symlink("/usr/bin/timeout", empty / "timeout");
     refused("plot " + (folder / "small.map").string() + " -o " + (folder / "x.png").string(),
-            "gnuplot is not installed (package gnuplot-nox)", 1, "PATH=" + empty.path().string());
+            "gnuplot cannot be started (is it installed? package gnuplot-nox)", 1, "PATH=" + empty.path().string());
 }
 
 TEST_CASE("command maps compare: figures of difference, as text, JSON and picture") {
