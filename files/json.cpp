@@ -97,7 +97,7 @@ void JsonReader::fail(std::string_view key, std::string_view found, std::string_
 bool JsonReader::has(std::string_view key) const { return value_->contains(std::string(key)); }
 
 const Json* JsonReader::find(std::string_view key) {
-    asked_.emplace_back(key);
+    if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
     const auto it = value_->find(std::string(key));
     return it == value_->end() ? nullptr : &*it;
 }
@@ -116,7 +116,7 @@ double JsonReader::number(std::string_view key, Bounds bounds) {
 }
 
 double JsonReader::number(std::string_view key, Bounds bounds, double otherwise) {
-    if (has(key)) return number(key, bounds);
+    if (find(key) != nullptr) return number(key, bounds);
     return otherwise;
 }
 
@@ -134,7 +134,7 @@ int JsonReader::integer(std::string_view key, int lowest, int highest) {
 }
 
 int JsonReader::integer(std::string_view key, int lowest, int highest, int otherwise) {
-    if (has(key)) return integer(key, lowest, highest);
+    if (find(key) != nullptr) return integer(key, lowest, highest);
     return otherwise;
 }
 
@@ -157,7 +157,7 @@ std::string JsonReader::text_in(const Json& value, std::string_view key, const s
 std::string JsonReader::text(std::string_view key) { return text_in(need(key, "a text"), key, "a text"); }
 
 std::string JsonReader::text(std::string_view key, std::string otherwise) {
-    if (has(key)) return text(key);
+    if (find(key) != nullptr) return text(key);
     return otherwise;
 }
 

@@ -134,7 +134,8 @@ files::Json number(std::optional<double> value) { return value ? files::number_o
 files::Json limits(const OpenInterval& ci) { return {number(ci.low), number(ci.high)}; }
 
 std::optional<double> percent(std::optional<double> sd) {
-    if (!sd) return std::nullopt;
+    constexpr double kMost_percent = 1e4;  // a hundred times as stiff: answers say nothing of it
+    if (!sd || !(jnd_percent_of_sd(*sd) <= kMost_percent)) return std::nullopt;
     return jnd_percent_of_sd(*sd);
 }
 OpenInterval percent(const OpenInterval& sd) { return {percent(sd.low), percent(sd.high)}; }

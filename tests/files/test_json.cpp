@@ -24,6 +24,18 @@ void read_young(JsonReader& json) { json.number("young_Pa", kPositive); }
 
 }  // namespace
 
+TEST_CASE("json: what may be left out is among what was expected, too") {
+    const auto read = [](JsonReader& json) {
+        json.text("name", "");
+        json.number("size_mm", {0.0, 1.0}, 0.5);
+        json.integer("count", 1, 2, 1);
+        json.boolean("on", false);
+        json.finish();
+    };
+    CHECK(refusal(R"({"size_mm": 1, "unheard": 1})", read) ==
+          "slab.json: unheard: found an unknown key, expected one of name size_mm count on");
+}
+
 TEST_CASE("json: comments are allowed") {
     const Json root = parse_json("// a scene\n{\"a\": 1 /* one */}", "x.json");
     CHECK(root["a"] == 1);

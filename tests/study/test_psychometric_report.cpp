@@ -103,6 +103,15 @@ TEST_CASE("psychometric report: nobody named, so the answers count as independen
     CHECK(contains(report_markdown(report), "| off | all | 240 | second/first |"));
 }
 
+TEST_CASE("psychometric report: a curve that hardly rises has no difference in per cent, of dozens of digits or any") {
+    Observations seen;
+    index_of("flat", seen.conditions);
+    add_stiffer({{-0.5, 100, 200}, {0.5, 101, 200}}, 0, -1, seen);
+    const Json json = report_json(make_report(seen, few_resamples()));
+    CHECK(json["psychometric"][0]["sd"].get<double>() > 10.0);
+    CHECK(json["psychometric"][0]["jnd_percent"].is_null());
+}
+
 TEST_CASE("psychometric report: answers at chance, at a step and at one level have nulls and say why") {
     Observations seen;
     for (const char* name : {"chance", "step", "one level"}) index_of(name, seen.conditions);
