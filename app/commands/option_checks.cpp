@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 
+#include "app/assets.h"
 #include "files/input_error.h"
 #include "files/text.h"
 
@@ -66,6 +69,20 @@ CLI::Validator code_of_participant() {
         return std::string();
     };
     return CLI::Validator(strip, "");
+}
+
+CLI::Validator protocol_or_name() {
+    const auto find = [](std::string& text) {
+        std::error_code error;  // a name may be too long for any file
+        if (text.empty() || std::filesystem::exists(text, error) || std::filesystem::path(text).has_parent_path())
+            return std::string();
+        for (const char* ending : {"", ".json"}) {
+            const std::filesystem::path shipped = assets_folder() / "protocols" / (text + ending);
+            if (std::filesystem::is_regular_file(shipped, error)) text = shipped.string();
+        }
+        return std::string();
+    };
+    return CLI::Validator(find, "");
 }
 
 void refuse_unused(const CLI::App& command, const char* option, bool used, const std::string& needed) {

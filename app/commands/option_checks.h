@@ -23,6 +23,9 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 // For a participant's code: takes it also as folders and participants.tsv write it, with `sub-` in front.
 CLI::Validator code_of_participant();
 
+// For a protocol: a name alone, with or without .json, that is no file here is that of a shipped one.
+CLI::Validator protocol_or_name();
+
 // Throws files::InputError if an option is given that changes nothing without `needed`.
 void refuse_unused(const CLI::App& command, const char* option, bool used, const std::string& needed);
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "app/study/study_scenes.h"
 #include "files/json.h"
@@ -129,7 +130,9 @@ void add_study_order(CLI::App& study) {
     auto options = std::make_shared<OrderOptions>();
     CLI::App* command = study.add_subcommand(
         "order", "Show each participant's conditions and their order, and how balanced the orders are");
-    command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
+    command->add_option("PROTOCOL", options->protocol, "protocol JSON, or the name of a shipped one")
+        ->required()
+        ->transform(protocol_or_name());
     command->add_option("--participants", options->participants, "number of participants")
         ->required()
         ->check(CLI::Range(1, 100000));

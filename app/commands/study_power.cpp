@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "app/study/power_run.h"
 #include "files/input_error.h"
@@ -172,7 +173,9 @@ void add_study_power(CLI::App& study) {
     PowerOptions& options = arguments->options;
     CLI::App* command = study.add_subcommand(
         "power", "Simulate many studies: power, type I error, and how often each interval holds the true value");
-    command->add_option("PROTOCOL", arguments->protocol, "protocol JSON")->required();
+    command->add_option("PROTOCOL", arguments->protocol, "protocol JSON, or the name of a shipped one")
+        ->required()
+        ->transform(protocol_or_name());
     command->add_option("--participants", options.participants, "numbers of participants, such as 6,12,20")
         ->required()
         ->delimiter(',')

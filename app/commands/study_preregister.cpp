@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/commands/option_checks.h"
 #include "app/commands/study.h"
 #include "app/scene_choices.h"
 #include "app/study/study_scenes.h"
@@ -66,7 +67,9 @@ void add_study_preregister(CLI::App& study) {
     CLI::App* command = study.add_subcommand(
         "preregister",
         "Make the preregistration sheet of a protocol: design, orders, primary test, stopping rule, hashes");
-    command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
+    command->add_option("PROTOCOL", options->protocol, "protocol JSON, or the name of a shipped one")
+        ->required()
+        ->transform(protocol_or_name());
     command->add_option("-o,--output", options->output, "Markdown file (default: standard output)");
     command
         ->add_option("--participants", options->participants,

@@ -36,7 +36,9 @@ void add_study_run(CLI::App& study) {
     options->participant.clear();
     CLI::App* command = study.add_subcommand(
         "run", "Run a study with people: instructions, trials, breaks, answers; resumes after a crash");
-    command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
+    command->add_option("PROTOCOL", options->protocol, "protocol JSON, or the name of a shipped one")
+        ->required()
+        ->transform(protocol_or_name());
     command->add_option("--log", options->log, "the study's folder, for the logs of all participants")->required();
     command
         ->add_option("--participant", options->participant,

@@ -76,7 +76,9 @@ void add_study_simulate(CLI::App& study) {
     auto arguments = std::make_shared<SimulateArguments>();
     CLI::App* command =
         study.add_subcommand("simulate", "Run a study with simulated participants, through the real loop and logs");
-    command->add_option("PROTOCOL", arguments->protocol, "protocol JSON")->required();
+    command->add_option("PROTOCOL", arguments->protocol, "protocol JSON, or the name of a shipped one")
+        ->required()
+        ->transform(protocol_or_name());
     command->add_option("--participants", arguments->options.participants, "number of simulated participants")
         ->required()
         ->check(CLI::Range(1, 9999));

@@ -74,6 +74,10 @@ double share_of(const calibration::RecordOptions& options, double level) {
     return (level - options.range.lowest) / (options.range.highest - options.range.lowest);
 }
 
+bool reads_area(const calibration::Recording& recording) {
+    return recording.arguments.level.level == calibration::LevelField::contact_area;
+}
+
 double residual_percent(const calibration::CapturedPoint& point, const calibration::Curve& curve) {
     const double curve_N = calibration::value_N(curve, point.level);
     return 100.0 * (point.force_N - curve_N) / std::max(curve_N, 1e-6);
@@ -108,11 +112,14 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
         const ImVec2 high = curve.at(kFull_percent * (band + 1) / options.bands, curve.most_y);
         draw.AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, low.y), kForceTints[1]);
     }
-    draw_plot_axes(curve, {words::kForceOverPressure, words::kPressureAxis, words::kForceAxis}, gui.mm(), draw);
+    const bool by_area = reads_area(recording);
+    const char* level_axis = by_area ? words::kAreaAxis : words::kPressureAxis;
+    const char* top = by_area ? words::kForceOverArea : words::kForceOverPressure;
+    draw_plot_axes(curve, {top, level_axis, words::kForceAxis}, gui.mm(), draw);
     const double most_percent = residual_axis_percent(session, guide);
     const Plot rest{data_area({area.x0, split, area.x1, area.y1 - gui.mm()}, gui.mm()), 0.0, kFull_percent,
                     -most_percent, most_percent};
-    draw_plot_axes(rest, {words::kResiduals, words::kPressureAxis, words::kPercentAxis}, gui.mm(), draw);
+    draw_plot_axes(rest, {words::kResiduals, level_axis, words::kPercentAxis}, gui.mm(), draw);
     draw.AddLine(rest.at(0.0, 0.0), rest.at(kFull_percent, 0.0), kPale);
     const float dot_px = 0.6f * gui.mm();
     for (const calibration::CapturedPoint& point : session.points) {
@@ -264,7 +271,8 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     const calibration::RecordSession& session = recording.session;
     const double level =
         session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
-    value_line(words::kPressure, fixed(100.0 * level, 1) + " %", column_px);
+    value_line(reads_area(recording) ? words::kContactArea : words::kPressure, fixed(100.0 * level, 1) + " %",
+               column_px);
     if (recording.sensor)
         value_line(words::kForce,
                    fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N",

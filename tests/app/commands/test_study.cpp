@@ -149,6 +149,13 @@ TEST_CASE(
     CHECK(parse_json(study("watch --json " + folder.path().string()).out, "stdout")["people"][0]["running"] == false);
 }
 
+TEST_CASE("command study: a shipped protocol is found by its name") {
+    const Called named = study("order effects --participants 2");
+    CHECK(named.status == 0);
+    CHECK(named.out == study("order " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 2").out);
+    refused("order effect --participants 2", "effect: ");
+}
+
 TEST_CASE("command study order: who gets what, with seeds and balance") {
     const std::string protocol = PALPA_SOURCE_DIR "/assets/protocols/";
     const Called called = study("order " + protocol + "paper.json --participants 40 --json");
