@@ -22,6 +22,14 @@ const fillStorage = (page) => page.evaluate(() => {
     window.ways = ['put', 'add'].map((way) => [way, IDBObjectStore.prototype[way]]);
     for (const [way] of ways) IDBObjectStore.prototype[way] = () => { throw new DOMException('full', 'QuotaExceededError'); };
 });
+const twoTrialsAndRoomForOne = async (browser) => {
+    await finishTrial(browser);
+    await until('stored', async () => (await stored(browser.page)).length === 1);
+    await browser.page.keyboard.press('r');
+    await frames(browser.page, 4);
+    await fillStorage(browser.page);
+    await finishTrial(browser);
+};
 
 test('a desk that answers nothing holds up the start for seconds only', () => withPage({quiet: true}, async ({page}, desk) => {
     desk.silent = true;
@@ -100,12 +108,7 @@ test('an upload that nobody answers is given up, and sent again', () => withPage
 
 test('a storage without room to say that a stored trial is at the desk holds up no other trial', () => withPage({quiet: true}, async (browser, desk) => {
     const {page} = browser;
-    await finishTrial(browser);
-    await until('stored', async () => (await stored(page)).length === 1);
-    await page.keyboard.press('r');
-    await frames(page, 4);
-    await fillStorage(page);
-    await finishTrial(browser);
+    await twoTrialsAndRoomForOne(browser);
     await until('said', () => tellsOf(page, 'is not stored'));
     await pairByDialog(page, desk.code);
     await until('both are at the desk', () => desk.logs.size === 2);
@@ -130,12 +133,7 @@ test('a trial that the desk does not take holds up no other', () => withPage({qu
 test('a full storage with trials: export, remove, and it goes on; what was exported is kept too', () => withPage({quiet: true}, async (browser) => {
     const {page} = browser;
     page.on('dialog', (dialog) => dialog.accept());
-    await finishTrial(browser);
-    await until('stored', async () => (await stored(page)).length === 1);
-    await page.keyboard.press('r');
-    await frames(page, 4);
-    await fillStorage(page);
-    await finishTrial(browser);
+    await twoTrialsAndRoomForOne(browser);
     await until('said', () => tellsOf(page, 'storage of this browser is full'));
     const found = await exported(page);
     assert.ok(found.some((name) => name.includes('run-01')) && found.some((name) => name.includes('run-02')), found.join());
