@@ -78,7 +78,9 @@ CLI::Validator protocol_or_name() {
             return std::string();
         for (const char* ending : {"", ".json"}) {
             const std::filesystem::path shipped = assets_folder() / "protocols" / (text + ending);
-            if (std::filesystem::is_regular_file(shipped, error)) text = shipped.string();
+            if (!std::filesystem::is_regular_file(shipped, error)) continue;
+            text = shipped.string();
+            break;
         }
         return std::string();
     };

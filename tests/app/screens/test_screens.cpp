@@ -265,6 +265,8 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         run->where.clear();
         run->step = step::Device{false, true};
         check_case(session, screens, c, "study-device-gone", screen);
+        run->step = step::Device{true, true, true, false, true};
+        check_case(session, screens, c, "study-nothing-felt", screen);
         run->warnings.clear();
     }
 }
