@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands/option_checks.h"
@@ -40,7 +41,10 @@ void withdraw_participant(const WithdrawOptions& options) {
     std::vector<std::string> notes;
     const std::vector<study::Person> people = study::read_people(options.directory, notes);
     const auto same = [&](const study::Person& one) { return one.code == options.participant; };
-    if (std::none_of(people.begin(), people.end(), same)) {
+    // who stopped at the first questions has a folder, but no line among the participants yet
+    const bool began =
+        std::filesystem::is_directory(std::filesystem::path(options.directory) / ("sub-" + options.participant));
+    if (!began && std::none_of(people.begin(), people.end(), same)) {
         throw files::bad_input("--participant", "", files::shown(options.participant),
                                "a code that is in " + options.directory);
     }

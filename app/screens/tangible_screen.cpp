@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/screens/plot.h"
 #include "app/screens/screens.h"
@@ -73,7 +74,7 @@ std::string limits_text(const TangibleActuator& actuator) {
     return fixed(scale * actuator.lower, 2) + " ... " + fixed(scale * actuator.upper, 2);
 }
 
-// Where the actuation stands between its limits, which are written on the bar.
+// Where the actuation stands between its limits, which are written on the bar; no place if it is not a number.
 void draw_actuation_bar(const TangibleActuator& actuator, double value, bool at_limit, const Gui& gui) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight());
@@ -82,8 +83,10 @@ void draw_actuation_bar(const TangibleActuator& actuator, double value, bool at_
     const float x = at.x + size.x * static_cast<float>(std::clamp(share, 0.0, 1.0));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), kForceTints[0]);
-    draw.AddRectFilled(at, ImVec2(x, at.y + size.y), kForceTints[1]);
-    draw.AddLine(ImVec2(x, at.y), ImVec2(x, at.y + size.y), at_limit ? kLag : kInk, 0.6f * gui.mm());
+    if (std::isfinite(value)) {
+        draw.AddRectFilled(at, ImVec2(x, at.y + size.y), kForceTints[1]);
+        draw.AddLine(ImVec2(x, at.y), ImVec2(x, at.y + size.y), at_limit ? kLag : kInk, 0.6f * gui.mm());
+    }
     const float small_px = 0.8f * ImGui::GetFontSize();
     draw.AddText(ImGui::GetFont(), small_px, ImVec2(at.x + gui.mm(), at.y + 0.1f * small_px), kInk,
                  limits_text(actuator).c_str());
@@ -103,20 +106,21 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
     const std::size_t count = std::min(soft.body.actuators.size(), session::kMostTangibleActuators);
     for (std::size_t k = 0; k < count; ++k) {
         const TangibleActuator& actuator = soft.body.actuators[k];
-        const bool held = ((soft.moment.active >> k) & 1U) != 0;
+        const bool relaxed = is_relaxed(soft.moment);  // the actuation is no solution then
+        const bool held = !relaxed && ((soft.moment.active >> k) & 1U) != 0;
         const double near = 0.01 * (actuator.upper - actuator.lower);
-        const double a = soft.moment.actuation[k];
+        const double a = relaxed ? std::numeric_limits<double>::quiet_NaN() : soft.moment.actuation[k];
         const bool at_limit = held && (a < actuator.lower + near || a > actuator.upper - near);
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(actuator.name.c_str());
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(actuation_text(actuator, soft.moment.actuation[k]).c_str());
+        ImGui::TextUnformatted(actuation_text(actuator, a).c_str());
         ImGui::TableNextColumn();
-        draw_actuation_bar(actuator, soft.moment.actuation[k], at_limit, gui);
+        draw_actuation_bar(actuator, a, at_limit, gui);
         ImGui::TableNextColumn();
-        const std::string command = is_relaxed(soft.moment) ? words::kRelaxedDrive
-                                    : actuator.by_length    ? in_unit(soft.moment.length[k], 1e3, 2, "mm")
-                                                            : actuation_text(actuator, a);
+        const std::string command = relaxed              ? words::kRelaxedDrive
+                                    : actuator.by_length ? in_unit(soft.moment.length[k], 1e3, 2, "mm")
+                                                         : actuation_text(actuator, a);
         const char* said = at_limit ? words::kAtLimit : held ? words::kHeld : "{}";
         ImGui::TextUnformatted(words::filled(said, {command}).c_str());
     }

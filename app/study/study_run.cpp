@@ -71,6 +71,30 @@ const char* what_is_wrong(const std::string& code) {
                : "Enter up to 20 letters and digits.";
 }
 
+// The code without capitals and zeros in front of its numbers: p1 for P1, p01 and P001.
+std::string without_spelling(const std::string& code) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::string out;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        const char c = code[i];
+        const bool in_front =
+            c == '0' && i + 1 < code.size() && digit(code[i + 1]) && (out.empty() || !digit(out.back()));
+        if (!in_front) out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return out;
+}
+
+// The code of a participant that `code`, of nobody yet, was probably meant to be; "" if there is none.
+std::string spelled_alike(const fs::path& directory, const std::string& code) {
+    std::vector<std::string> notes;
+    std::string alike;
+    for (const study::Person& one : study::read_people(directory, notes)) {
+        if (one.code == code) return "";
+        if (without_spelling(one.code) == without_spelling(code)) alike = one.code;
+    }
+    return alike;
+}
+
 void write_now(const StudyRun& run) {
     const fs::path subject = run.directory / ("sub-" + run.code);
     fs::create_directories(subject);
@@ -154,6 +178,8 @@ void begin_trial_step(StudyRun& run) {
 }
 
 const char* why_refused(const StudyRun& run, const std::string& code) {
+    if (!spelled_alike(run.directory, code).empty())
+        return "which differs from a participant's code by capitals or zeros only";
     if (study::withdrawal_of(run.directory, code) != study::Withdrawal::none) return "who has withdrawn from the study";
     if (!study::replaced_by(run.directory, code).empty()) return "who was replaced";
     return run.code.empty() ? "who is at another screen now" : "who has finished all trials";
@@ -279,6 +305,12 @@ void carry_out(const StudyWish& wish, StudyRun& run) {
 void enter_code(const std::string& code, StudyRun& run) {
     run.note.clear();
     if (!plain(code)) return refuse_code(what_is_wrong(code), run);
+    std::string alike;
+    if (!kept(run, [&] { alike = spelled_alike(run.directory, code); })) return;
+    if (!alike.empty()) {
+        return refuse_code(
+            alike + " is in this study. Enter that code, or one that differs by more than capitals or zeros.", run);
+    }
     if (!kept(run, [&] { lock_code(code, run); })) return;
     if (run.lock->held_elsewhere()) {
         run.lock.reset();

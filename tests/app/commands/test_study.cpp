@@ -359,6 +359,9 @@ TEST_CASE("command study: staircases are ordered, simulated, gone on with and an
     refused("withdraw " + log + " --participant 9 --data keep", "--participant: found '9', expected a code that is in");
     refused("withdraw " + folder.path().string() + " --participant 9 --data keep", "found no study.json");
     refused("withdraw " + log + " --participant sim0002 --data burn", "--data");
+    // somebody who stopped at the first questions
+    std::filesystem::create_directories(std::filesystem::path(log) / "sub-10");
+    CHECK(study("withdraw " + log + " --participant 10 --data leave-out").status == 0);
     CHECK(study("withdraw " + log + " --participant sim0002 --data leave-out").status == 0);
     refused("withdraw " + log + " --participant sim0002 --data keep", "who has withdrawn the data");
     const Json left = parse_json(study("analyse " + log + " --json").out, "stdout");

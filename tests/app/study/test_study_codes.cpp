@@ -115,3 +115,28 @@ TEST_CASE("study run: the choices of the next person go to files of their own") 
     CHECK(finished_trials(log, "01") == std::set<int>{1});
     CHECK(finished_trials(log, "02") == std::set<int>{1});
 }
+
+TEST_CASE("study run: a code that differs from a participant's by capitals or zeros alone begins nobody new") {
+    const TemporaryFolder folder;
+    const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
+    StudyRun run = open_study_run(protocol, folder / "log", "");
+    enter_code("P07", run);
+    same_person(false, run);
+    for (const char* code : {"p07", "P7", "p007"}) {
+        CAPTURE(code);
+        enter_code(code, run);
+        CHECK(at<step::Code>(run));
+        CHECK(run.note == "P07 is in this study. Enter that code, or one that differs by more than capitals or zeros.");
+        CHECK_FALSE(std::filesystem::exists(folder / "log" / (std::string("sub-") + code)));
+        CHECK(contains(message_of([&] { open_study_run(protocol, folder / "log", code); }),
+                       "which differs from a participant's code by capitals or zeros only"));
+    }
+    enter_code("P07", run);
+    CHECK(at<step::Again>(run));
+    for (const char* code : {"P70", "P0", "P077", "Q7"}) {
+        CAPTURE(code);
+        same_person(false, run);
+        enter_code(code, run);
+        CHECK(at<step::Instructions>(run));
+    }
+}
