@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <string>
+#include <utility>
 
 #include "app/assets.h"
 #include "files/input_error.h"
@@ -32,12 +34,25 @@ void add_choices(const fs::path& folder, std::vector<Choice>& out) {
     }
 }
 
+// In order of their names. One of the user's own that is called as another is, such as an edited copy, has its file's name too.
+std::vector<Choice> in_order(std::vector<Choice> choices) {
+    const std::vector<Choice> given = choices;
+    const fs::path own = user_folder();
+    for (Choice& one : choices) {
+        const fs::path file(one.file);
+        const auto alike = [&](const Choice& other) { return other.name == one.name && other.file != one.file; };
+        if (file.parent_path().parent_path() == own && std::any_of(given.begin(), given.end(), alike))
+            one.name += " (own, " + file.stem().string() + ")";
+    }
+    std::sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
+    return choices;
+}
+
 std::vector<Choice> choices(const char* kind) {
     std::vector<Choice> out;
     add_choices(assets_folder() / kind, out);
     add_choices(user_folder() / kind, out);
-    std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
-    return out;
+    return in_order(std::move(out));
 }
 
 // A name without a folder that is not here is one of the choices below, with or without its ending. A folder of that name is
@@ -95,8 +110,7 @@ std::vector<Choice> map_choices() {
                 out.push_back({name_in(entry / "map.json", entry.stem().string()), entry.string()});
         }
     }
-    std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
-    return out;
+    return in_order(std::move(out));
 }
 
 fs::path default_trace() { return assets_folder() / "traces" / "raster.tsv"; }

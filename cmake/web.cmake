@@ -33,7 +33,8 @@ add_library(palpa_imgui STATIC
     ${PALPA_IMGUI_SOURCE}/backends/imgui_impl_opengl3.cpp)
 target_include_directories(palpa_imgui SYSTEM PUBLIC ${PALPA_IMGUI_SOURCE})
 target_include_directories(palpa_imgui SYSTEM PRIVATE ${PALPA_IMGUI_SOURCE}/backends)
-target_compile_definitions(palpa_imgui PRIVATE IMGUI_IMPL_OPENGL_ES3)
+# The desk's library checks how the same screens call it; the texts of its asserts alone are 30 KB to load.
+target_compile_definitions(palpa_imgui PRIVATE IMGUI_IMPL_OPENGL_ES3 NDEBUG)
 target_compile_options(palpa_imgui PRIVATE -w -Oz)
 add_library(PkgConfig::IMGUI ALIAS palpa_imgui)
 

@@ -81,6 +81,23 @@ TEST_CASE("scenes: a scene and a map of a person's own that cannot be read are l
     CHECK(listed(maps, "liver"));
 }
 
+TEST_CASE("scenes: an edited copy of a shipped scene that has kept its name is told apart from it") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "palpa/scenes");
+    const fs::path shipped = assets_folder() / "scenes/default.json";
+    fs::copy_file(shipped, folder / "palpa/scenes/mine.json");
+    ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+    const std::vector<Choice> scenes = scene_choices();
+    ::unsetenv("XDG_DATA_HOME");
+    std::string shipped_name, own_name;
+    for (const Choice& one : scenes) {
+        if (fs::path(one.file) == shipped) shipped_name = one.name;
+        if (fs::path(one.file) == folder / "palpa/scenes/mine.json") own_name = one.name;
+    }
+    REQUIRE_FALSE(shipped_name.empty());
+    CHECK(own_name == shipped_name + " (own, mine)");
+}
+
 // Python's jsonschema is the independent judge: the readers of Palpa do not look at the schemas.
 TEST_CASE("assets: every shipped file is valid by the schema of its kind") {
     const std::string python = python_with("jsonschema");

@@ -342,6 +342,17 @@ test('a full storage: the study that is asked for comes from the desk all the sa
     await at(page, 'instructions');
 }, {protocols: {twice: {...tiny, repeats: 2}}}));
 
+test('texts with the letters and quotation marks of European languages are shown; those of others are refused', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await open(browser, desk.url, '?protocol=europe&participant=5');
+    await at(page, 'instructions');
+    await page.goto(`${desk.url}?protocol=japan&participant=5`);
+    await page.waitForFunction(() => /instructions: found '\u3042', expected letters of the font: Latin letters of Europe/.test(document.getElementById('message-text').textContent));
+}, {protocols: {
+    europe: {...tiny, instructions: 'Zażółć gęślą jaźń – „Ťuk“ “ğış” ‘Țară’ — 5 €… • »ß«'},
+    japan: {...tiny, instructions: '\u3042'},
+}}));
+
 test('a browser that stores nothing is refused a study, in words', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;
     await page.addInitScript(() => { IDBFactory.prototype.open = () => { throw new Error('refused'); }; });
