@@ -1,8 +1,10 @@
 #include "mechanics/beam.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "mechanics/error.h"
 #include "mechanics/index.h"
@@ -146,6 +148,34 @@ BeamTip beam_tip(std::span<const BeamPiece> pieces, bool clamped_low, bool with_
         if (with_shear) out.m_per_N += (a - b) / piece.section.shear_N;
     }
     return out;
+}
+
+double euler_load_N(std::span<const BeamPiece> pieces, bool clamped_low) {
+    assert(!pieces.empty());
+    // y = A cos(phase), whose phase grows by k l along a piece; the column has buckled where it reaches pi/2
+    const auto buckles = [&](double force_N) {
+        double phase = 0.0, slope_over_y = 0.0;  // -y'/y, which goes on from piece to piece
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const BeamPiece& piece = pieces[clamped_low ? i : pieces.size() - 1 - i];
+            const double k = std::sqrt(force_N / piece.section.bending_N_m2);
+            phase = std::atan(slope_over_y / k) + k * (piece.to_m - piece.from_m);
+            if (phase >= 0.5 * std::numbers::pi) return true;
+            slope_over_y = k * std::tan(phase);
+        }
+        return false;
+    };
+    const auto bending = [](const BeamPiece& a, const BeamPiece& b) {
+        return a.section.bending_N_m2 < b.section.bending_N_m2;
+    };
+    const auto [softest, stiffest] = std::minmax_element(pieces.begin(), pieces.end(), bending);
+    const double length_m = pieces.back().to_m - pieces.front().from_m;
+    const double uniform = std::numbers::pi * std::numbers::pi / (4.0 * length_m * length_m);
+    double low_N = uniform * softest->section.bending_N_m2, high_N = uniform * stiffest->section.bending_N_m2;
+    for (int i = 0; i < 100 && high_N > low_N * (1.0 + 1e-12); ++i) {
+        const double middle_N = 0.5 * (low_N + high_N);
+        (buckles(middle_N) ? high_N : low_N) = middle_N;
+    }
+    return 0.5 * (low_N + high_N);
 }
 
 double beam_deflection_m_per_N(std::span<const BeamPiece> pieces, bool clamped_low, const BeamPlaces& places,

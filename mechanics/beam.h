@@ -59,6 +59,12 @@ struct BeamTip {
 };
 BeamTip beam_tip(std::span<const BeamPiece> pieces, bool clamped_low, bool with_shear);
 
+// Euler's load of the beam as a column: the least force at its tip, along its axis, under which it buckles (N), without
+// shear. Between the clamp and the tip D y'' = -P y, y(x) = w(L) - w(x), y'(clamp) = 0, y(tip) = 0; a uniform column has
+// pi^2 D / (4 L^2). Pieces must not be empty. Source: Timoshenko, Gere, Theory of Elastic Stability, 2nd edition, section
+// 2.14 (a column of two sections), here for any number of them.
+double euler_load_N(std::span<const BeamPiece> pieces, bool clamped_low);
+
 // Returns the deflection per newton at a place along the axis, for a force at another place, both between the clamp and the
 // free end or beyond it (m/N):
 //   w(x) = int_0^min(x, a) (a - s)(x - s) / D ds  ( + min(x, a) / kGA )

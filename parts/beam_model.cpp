@@ -141,10 +141,7 @@ std::string axial_doubt(const Part& part, const PartLoad& load) {
         } catch (const MeshError&) {
             return "";
         }
-        // Euler's load of a clamped column, pi^2 D / (4 L^2), by its stiffness at the tip, 3 D / L^3
-        const double stiffness_N_per_m = 1.0 / beam_tip(pieces, clamped_low, false).m_per_N;
-        constexpr double kEuler = 3.14159265358979323846 * 3.14159265358979323846 / 12.0;
-        buckling_N = std::min(buckling_N, kEuler * stiffness_N_per_m * (span.high_m - span.low_m));
+        buckling_N = std::min(buckling_N, euler_load_N(pieces, clamped_low));
     }
     const bool presses = (along > 0.0) != clamped_low;
     const double share = std::abs(along) * load.force_N / buckling_N;

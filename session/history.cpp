@@ -49,6 +49,8 @@ files::Json nodules_json(const KeptTrial& trial) {
                        {"x_mm", rounded(n.x_mm)},
                        {"y_mm", rounded(n.y_mm)},
                        {"diameter_mm", rounded(n.diameter_mm)},
+                       {"length_mm", rounded(n.length_mm)},
+                       {"angle_deg", rounded(n.angle_deg)},
                        {"finding", kFindings[static_cast<std::size_t>(n.finding)]}});
     }
     return out;
@@ -103,6 +105,8 @@ void read_nodules(files::JsonReader& json, KeptTrial& trial) {
         n.x_mm = one.number("x_mm", files::kAnyNumber);
         n.y_mm = one.number("y_mm", files::kAnyNumber);
         n.diameter_mm = one.number("diameter_mm", files::kNotNegative);
+        n.length_mm = one.number("length_mm", files::kNotNegative, 0.0);  // trials of earlier versions lack both
+        n.angle_deg = one.number("angle_deg", files::kAnyNumber, 0.0);
         n.finding =
             static_cast<Finding>(one.choice("finding", {kFindings[0], kFindings[1], kFindings[2], kFindings[3]}));
         one.finish();
@@ -156,7 +160,8 @@ KeptTrial kept_trial(const Session& session, const std::string& utc) {
     out.max_force_N = trial.max_force_N;
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
         const stiffnessmaps::Nodule& n = plan.nodules[i];
-        out.nodules.push_back({n.id, 1e3 * n.x_m, 1e3 * n.y_m, 1e3 * n.diameter_m.value_or(4e-3), result.findings[i]});
+        out.nodules.push_back({n.id, 1e3 * n.x_m, 1e3 * n.y_m, 1e3 * n.diameter_m.value_or(4e-3),
+                               1e3 * n.length_m.value_or(0.0), n.angle_deg.value_or(0.0), result.findings[i]});
     }
     for (std::size_t i = 0; i < trial.marks.size(); ++i) {
         const Mark& m = trial.marks[i];

@@ -16,6 +16,8 @@ struct KeptNodule {
     double x_mm = 0.0;
     double y_mm = 0.0;
     double diameter_mm = 0.0;
+    double length_mm = 0.0;  // of a rod with round ends; up to the diameter it is a disc
+    double angle_deg = 0.0;  // of its axis, counter-clockwise from +x
     Finding finding = Finding::not_touched;
 };
 

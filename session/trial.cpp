@@ -196,8 +196,7 @@ Debrief debrief(const scene::Plan& plan, const Trial& trial) {
         out.score.ppv = std::nan("");
     }
     for (std::size_t i = 0; i < targets.size(); ++i) {
-        const double near_m = 0.5 * std::max(targets[i].diameter_m, targets[i].length_m);
-        out.depth_m.push_back(study::deepest_near(trial.coverage, targets[i].x_m, targets[i].y_m, near_m));
+        out.depth_m.push_back(study::deepest_on(trial.coverage, targets[i]));
         out.findings.push_back(finding_of(trial.coverage, out.score.found_by[i] >= 0, out.depth_m.back()));
     }
     out.area = study::shares_of(trial.coverage);

@@ -64,13 +64,14 @@ PalpationLevel level_of(const Coverage& c, double depth_m) {
 }
 
 CoverageShares shares_of(const Coverage& c) {
-    CoverageShares shares;
-    const double cell = 1.0 / static_cast<double>(c.depth_m.size());
+    int cells[kPalpationLevels] = {};  // counted, so that all are exactly 1
     for (const float depth_m : c.depth_m) {
         const auto level = static_cast<int>(level_of(c, static_cast<double>(depth_m)));
-        if (level == 0) shares.at_least[0] += cell;
-        for (int l = 1; l <= level; ++l) shares.at_least[l] += cell;
+        if (level == 0) ++cells[0];
+        for (int l = 1; l <= level; ++l) ++cells[l];
     }
+    CoverageShares shares;
+    for (int l = 0; l < kPalpationLevels; ++l) shares.at_least[l] = cells[l] / static_cast<double>(c.depth_m.size());
     return shares;
 }
 
@@ -80,6 +81,21 @@ double deepest_near(const Coverage& c, double x_m, double y_m, double radius_m) 
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
             if (holds(c, i, j, x_m, y_m, radius_m)) deepest_m = std::max(deepest_m, c.depth_m[cell_index(c, i, j)]);
+        }
+    }
+    return static_cast<double>(deepest_m);
+}
+
+double deepest_on(const Coverage& c, const Target& target) {
+    const double radius_m = 0.5 * target.diameter_m;
+    float deepest_m = 0.0f;
+    const CellRange range = cells_near(c, target.x_m, target.y_m, std::max(radius_m, 0.5 * target.length_m));
+    for (int j = range.low_y; j <= range.high_y; ++j) {
+        for (int i = range.low_x; i <= range.high_x; ++i) {
+            const MarkedPlace centre{c.x_m + (i + 0.5) * c.cell_m, c.y_m + (j + 0.5) * c.cell_m};
+            const bool on = distance_m(target, centre) <= radius_m;
+            if (on || holds(c, i, j, target.x_m, target.y_m, radius_m))
+                deepest_m = std::max(deepest_m, c.depth_m[cell_index(c, i, j)]);
         }
     }
     return static_cast<double>(deepest_m);

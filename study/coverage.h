@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "study/score.h"
+
 namespace palpa::study {
 
 // Light, medium and deep palpation are the thirds of the depth up to which the tissue is known; none is no contact.
@@ -39,6 +41,9 @@ CoverageShares shares_of(const Coverage& coverage);
 
 // Returns the greatest depth within `radius_m` of a place, or 0 if nothing there was touched.
 double deepest_near(const Coverage& coverage, double x_m, double y_m, double radius_m);
+
+// Returns the greatest depth on a target, or 0 if nothing of it was touched.
+double deepest_on(const Coverage& coverage, const Target& target);
 
 const char* name_of(PalpationLevel level);
 

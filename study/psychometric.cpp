@@ -55,29 +55,50 @@ std::array<double, 2> lapses_of(double greatest) { return {0.2 * greatest, great
 
 constexpr double kSteepest = 40.0;  // 1 / sd of a start, per range of x
 constexpr double kFlattest = 0.2;
-constexpr int kSlopes = 6;  // in a geometric row between them
+constexpr int kSlopes = 9;  // in a geometric row between them
 double slope_of_row(int i) {
     return kFlattest * std::pow(kSteepest / kFlattest, static_cast<double>(i) / (kSlopes - 1));
 }
 
-// The likeliest curve of all: from a coarse grid of places, slopes and lapses, or from one start.
+// Where curves may have their PSE, four in each gap between levels, so that none much steeper than a gap is passed over, and
+// some beyond all levels.
+std::vector<double> places_of(std::span<const LevelAnswers> levels) {
+    constexpr int kInGap = 4;
+    std::vector<double> places;
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        for (int k = 0; k < kInGap; ++k)
+            places.push_back(levels[i - 1].x + (levels[i].x - levels[i - 1].x) * k / kInGap);
+    }
+    for (const double beyond : {0.0, 0.15, 0.4}) {
+        places.push_back(levels.back().x + beyond * range_of(levels));
+        if (beyond > 0.0) places.push_back(levels.front().x - beyond * range_of(levels));
+    }
+    return places;
+}
+
+// The likeliest curve of all: there may be several tops, of which the steep ones are narrow, so that one climb begins at
+// each of a row of slopes, from the likeliest place and lapse with that slope; or from one start.
 CurvePoint likeliest(std::span<const LevelAnswers> levels, double greatest_lapse,
                      const std::optional<PsychometricCurve>& start) {
     const double range = range_of(levels);
     CurveSearch search{levels, greatest_lapse, 0.5 * (levels.front().x + levels.back().x)};
-    Starts<3> starts;
+    CurvePoint best;
     if (start) {
-        offer(search, {(search.origin - start->pse) / start->sd, 1.0 / start->sd, start->lapse}, starts);
+        best = climb(search, {(search.origin - start->pse) / start->sd, 1.0 / start->sd, start->lapse});
     } else {
+        best.log_likelihood = -kInfinity;
+        const std::vector<double> places = places_of(levels);
         for (int i = 0; i < kSlopes; ++i) {
             const double slope = slope_of_row(i) / range;
-            for (int place = -3; place <= 3; ++place) {
+            Starts<1> starts;
+            for (const double place : places) {
                 for (const double lapse : lapses_of(greatest_lapse))
-                    offer(search, {-slope * 0.18 * place * range, slope, lapse}, starts);
+                    offer(search, {slope * (search.origin - place), slope, lapse}, starts);
             }
+            const CurvePoint top = best_climb(search, starts);
+            if (top.log_likelihood > best.log_likelihood) best = top;
         }
     }
-    CurvePoint best = best_climb(search, starts);
     best.height -= best.slope * search.origin;  // about an origin at 0
     return best;
 }

@@ -91,6 +91,22 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
+namespace {
+
+// Latin letters beyond those of Western Europe, dashes, quotation marks, bullet, ellipsis and euro.
+constexpr ImWchar kEurope[] = {0x100, 0x17f, 0x218, 0x21b, 0x2010, 0x2027, 0x20ac, 0x20ac, 0};
+constexpr ImWchar kGreek[] = {0x370, 0x3ff, 0};
+constexpr ImWchar kCyrillic[] = {0x400, 0x4ff, 0};
+
+// Who is asked in an alphabet answers in that alphabet, with any of its letters.
+void add_begun(const ImWchar (&alphabet)[3], ImFontGlyphRangesBuilder& builder) {
+    bool begun = false;
+    for (std::size_t letter = alphabet[0]; letter <= alphabet[1]; ++letter) begun = begun || builder.GetBit(letter);
+    if (begun) builder.AddRanges(alphabet);
+}
+
+}  // namespace
+
 void Gui::add_letters(const std::string& texts) {
     texts_ += texts;
     mm_ = 0.0f;
@@ -110,7 +126,10 @@ void Gui::set_scale(float px_per_mm, float text) {
     ImVector<ImWchar> letters;  // needed until the texture is made
     ImFontGlyphRangesBuilder builder;
     builder.AddRanges(fonts.GetGlyphRangesDefault());
+    builder.AddRanges(kEurope);
     builder.AddText(texts_.c_str());
+    add_begun(kGreek, builder);
+    add_begun(kCyrillic, builder);
     builder.BuildRanges(&letters);
     if (font_file_.empty()) {
         ImFontConfig embedded;

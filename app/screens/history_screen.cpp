@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "app/screens/nodule_outline.h"
 #include "app/screens/plot.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
@@ -137,7 +138,6 @@ void draw_replay(const KeptTrial& trial, double shown_s, const PanelArea& area, 
     draw.AddQuadFilled(px(trial.x_mm - half_x, trial.y_mm - half_y), px(trial.x_mm + half_x, trial.y_mm - half_y),
                        px(trial.x_mm + half_x, trial.y_mm + half_y), px(trial.x_mm - half_x, trial.y_mm + half_y),
                        IM_COL32(44, 50, 56, 255));
-    const auto px_per_mm = static_cast<float>(1e-3 * view.px_per_m);
     const double deepest_mm = std::max(1e-3, trial.known_depth_mm);
     for (std::size_t i = 0; i < trial.path.size() && trial.path[i].time_s <= shown_s; ++i) {
         const session::KeptPoint& p = trial.path[i];
@@ -145,13 +145,11 @@ void draw_replay(const KeptTrial& trial, double shown_s, const PanelArea& area, 
         draw.AddCircleFilled(px(p.x_mm, p.y_mm), (0.4f + 0.5f * static_cast<float>(level)) * mm, kAreaTints[level], 10);
     }
     for (const session::KeptNodule& n : trial.nodules) {
-        const float radius_px = 0.5f * static_cast<float>(n.diameter_mm) * px_per_mm;
-        const ImVec2 at = px(n.x_mm, n.y_mm);
-        if (n.finding == session::Finding::found)
-            draw.AddCircle(at, radius_px, kInk, 48, 0.6f * mm);
-        else
-            dashed_circle(draw, at, radius_px, kInk, 0.6f * mm);
-        plated_text(draw, ImVec2(at.x + radius_px + mm, at.y - 0.5f * ImGui::GetFontSize()), kInk, n.id);
+        const Outline outline = outline_of({n.x_mm, n.y_mm}, n.diameter_mm, n.length_mm, n.angle_deg);
+        const bool found = n.finding == session::Finding::found;
+        const float right_px = draw_outline(outline, px, {0.6f * mm, 0.3f * mm, !found}, draw);
+        const float middle_px = px(n.x_mm, n.y_mm).y;
+        plated_text(draw, ImVec2(right_px + mm, middle_px - 0.5f * ImGui::GetFontSize()), kInk, n.id);
     }
     for (const session::KeptMark& m : trial.marks) {
         if (m.time_s > shown_s) continue;

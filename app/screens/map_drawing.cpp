@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/screens/map_screen.h"
+#include "app/screens/nodule_outline.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "figures/colour_maps.h"
@@ -189,35 +190,10 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     draw.AddText(ImVec2(low.x, f.low.y - ImGui::GetFontSize() - mm), kInk, values.unit);
 }
 
-// Draws a nodule as a disc, or as a capsule along its angle; detected nodules are dashed.
+// Detected nodules are dashed.
 void draw_nodule(const stiffnessmaps::Nodule& nodule, const Frame& f, float mm, ImDrawList& draw) {
-    const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
-    const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
-    const double turn = nodule.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
-    // even steps along the outline, so that dashes are alike on its ends and sides
-    const double round_m = std::numbers::pi * radius_m;
-    const double length_m = 2.0 * (round_m + 2.0 * half_m);
-    const auto place_at_share = [&](double share) {
-        double s = share * length_m;
-        const double side = s < 0.5 * length_m ? 1.0 : -1.0;
-        if (side < 0.0) s -= 0.5 * length_m;
-        // the end on that side comes first, then the long side
-        const double a = s < round_m ? s / radius_m - 0.5 * std::numbers::pi : 0.0;
-        const double along = s < round_m ? half_m + radius_m * std::cos(a) : half_m - (s - round_m);
-        const double across = s < round_m ? radius_m * std::sin(a) : radius_m;
-        const double x = side * along;
-        const double y = side * across;
-        return f.px(nodule.x_m + x * std::cos(turn) - y * std::sin(turn),
-                    nodule.y_m + x * std::sin(turn) + y * std::cos(turn));
-    };
-    constexpr int kPoints = 96;
-    ImVec2 points[kPoints + 1];
-    for (int k = 0; k <= kPoints; ++k) points[k] = place_at_share((k % kPoints) / static_cast<double>(kPoints));
-    draw.AddPolyline(points, kPoints, kDark, ImDrawFlags_Closed, 1.1f * mm);
-    for (int k = 0; k < kPoints; ++k) {
-        if (!nodule.placed && k % 6 >= 3) continue;
-        draw.AddLine(points[k], points[k + 1], kInk, 0.6f * mm);
-    }
+    const auto px = [&](double x_m, double y_m) { return f.px(x_m, y_m); };
+    draw_outline(outline_of(nodule), px, {0.6f * mm, 0.25f * mm, !nodule.placed}, draw);
     const ImVec2 at = f.px(nodule.x_m, nodule.y_m);
     const ImVec2 size = ImGui::CalcTextSize(nodule.id.c_str());
     plated_text(draw, ImVec2(at.x - 0.5f * size.x, at.y - 0.5f * size.y), kInk, nodule.id);

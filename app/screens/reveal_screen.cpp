@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/screens/coverage_drawing.h"
+#include "app/screens/nodule_outline.h"
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
@@ -26,14 +27,13 @@ std::vector<PanelArea> draw_nodules(const Shown& shown, const session::Debrief& 
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         const stiffnessmaps::Nodule& nodule = shown.plan.nodules[i];
         const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
-        const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
-        const float radius_px = radius_m * shown.view.px_per_m;
+        const auto px = [&](double x_m, double y_m) { return on_surface(shown.picture, x_m, y_m); };
         const bool found = debrief.findings[i] == session::Finding::found;
-        ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m, {0.7f * mm, 0.5f * mm, !found});
+        const float right_px = draw_outline(outline_of(nodule), px, {0.7f * mm, 0.5f * mm, !found}, draw);
         const std::string text = nodule.id + ": " + name_of(debrief.findings[i]);
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
-        const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
-        const float left_px = fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px;
+        const bool fits = right_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
+        const float left_px = fits ? right_px + mm : 2.0f * at.x - right_px - mm - width_px;
         names.push_back(plated_text(draw, ImVec2(left_px, at.y + 0.3f * ImGui::GetFontSize()), kInk, text));
     }
     return names;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/screens/force_bar.h"
+#include "app/screens/nodule_outline.h"
 #include "app/screens/pins_drawing.h"
 #include "app/screens/screens.h"
 #include "app/screens/tactile_screen.h"
@@ -292,12 +293,10 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
     std::vector<PanelArea> names;
     if (shown.trial.mode == session::TrialMode::practice) {
         for (const stiffnessmaps::Nodule& nodule : shown.plan.nodules) {
-            const ImVec2 at = on_surface(shown.picture, nodule.x_m, nodule.y_m);
-            const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
-            ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m,
-                            {0.45f * gui.mm(), 0.5f * gui.mm()});
+            const auto px = [&](double x_m, double y_m) { return on_surface(shown.picture, x_m, y_m); };
+            const float right_px = draw_outline(outline_of(nodule), px, {0.45f * gui.mm(), 0.5f * gui.mm()}, draw);
             names.push_back(
-                plated_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id));
+                plated_text(draw, ImVec2(right_px + gui.mm(), px(nodule.x_m, nodule.y_m).y), kInk, nodule.id));
         }
     }
     std::vector<Label> labels;

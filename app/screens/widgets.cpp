@@ -125,7 +125,7 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
                                             ImVec2(high.x - key_px - 1.2f * gui.mm(), low.y + 0.8f * gui.mm()), colour,
                                             key);
     }
-    return pressed;
+    return pressed && look.enabled;  // one that had the keyboard as it was disabled would still take Enter
 }
 
 bool icon_button(Icon icon, const char* hint, const Gui& gui) {
@@ -267,21 +267,6 @@ ImVec2 on_surface(const render::TissuePicture& picture, double x_m, double y_m) 
     const glm::vec3 p_m = render::displaced_m(picture, render::dragged_m(picture.view, {x_m, y_m}));
     const glm::vec2 px = render::project_px(picture.view, p_m);
     return {px.x, px.y};
-}
-
-void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, const glm::vec2& centre_m, float radius_m,
-                     const RimmedLine& line) {
-    constexpr int kPoints = 64;
-    std::array<ImVec2, kPoints> points;
-    for (int i = 0; i < kPoints; ++i) {
-        const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / kPoints;
-        const glm::vec2 p_m = centre_m + radius_m * glm::vec2(std::cos(angle), std::sin(angle));
-        points[static_cast<std::size_t>(i)] =
-            on_surface(picture, static_cast<double>(p_m.x), static_cast<double>(p_m.y));
-    }
-    draw.AddPolyline(points.data(), kPoints, kDark, ImDrawFlags_Closed, line.core_px + 2.0f * line.rim_px);
-    if (!line.dashed) return draw.AddPolyline(points.data(), kPoints, kInk, ImDrawFlags_Closed, line.core_px);
-    for (std::size_t i = 0; i < kPoints; i += 4) draw.AddPolyline(&points[i], 3, kInk, 0, line.core_px);
 }
 
 void cross(ImDrawList& draw, ImVec2 at, float r, ImU32 colour, float width_px) {

@@ -95,9 +95,6 @@ struct RimmedLine {
     float rim_px = 1.0f;
     bool dashed = false;
 };
-// Draws a circle that lies on the surface and is displaced with it.
-void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, const glm::vec2& centre_m, float radius_m,
-                     const RimmedLine& line);
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 // Between fork and exec only what a signal handler may call.
 [[noreturn]] void become(const char* program, char* const* argv, int out, bool outlives, pid_t parent) {
+    ::setpgid(0, 0);  // Ctrl-C at the terminal is for the program, which ends its simulators after it
     if (!outlives) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent) ::_exit(127);  // it has ended in between

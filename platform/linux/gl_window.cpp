@@ -59,7 +59,9 @@ void init_video(bool visible) {
     const char* before = SDL_GetHint(SDL_HINT_VIDEODRIVER);
     const std::string asked = before != nullptr ? before : "";
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // nobody asks such a window for events: signals end the program
     const int failed = SDL_InitSubSystem(SDL_INIT_VIDEO);
+    SDL_ResetHint(SDL_HINT_NO_SIGNAL_HANDLERS);
     SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // a later window may be a visible one
     if (!asked.empty()) SDL_SetHint(SDL_HINT_VIDEODRIVER, asked.c_str());
     if (failed != 0) throw std::runtime_error(no_gl_message("no off-screen drawing"));

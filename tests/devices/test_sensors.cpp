@@ -7,6 +7,7 @@
 #include <functional>
 #include <signal.h>
 #include <thread>
+#include <unistd.h>
 
 #include "devices/load_cell.h"
 #include "devices/netft.h"
@@ -54,6 +55,12 @@ SensorReader* open_reader(const SimulatorProcess& simulator, std::unique_ptr<Sen
 }
 
 }  // namespace
+
+TEST_CASE(
+    "simulators: Ctrl-C at the terminal reaches the program alone, which ends them after its devices are at rest") {
+    const SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "500"});
+    CHECK(::getpgid(simulator.pid()) == simulator.pid());
+}
 
 TEST_CASE("Net F/T: 7 kHz with nothing lost, times and forces as sent") {
     // PALPA_LONG_S: for how long (3 s here; 60 s in the long run)

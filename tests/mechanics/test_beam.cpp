@@ -1,5 +1,6 @@
 #include <cmath>
 #include <doctest/doctest.h>
+#include <numbers>
 
 #include "mechanics/beam.h"
 #include "mechanics/error.h"
@@ -76,6 +77,35 @@ TEST_CASE("beam: clamped at the other end, an uneven beam is another one") {
     const double I = 1e-8 / 12.0, eighth = 1e-3 / 8.0;
     CHECK(stiff_root == close_to((7 * eighth / 8.3e9 + eighth / 2e9) / (3.0 * I)).epsilon(1e-12));
     CHECK(soft_root == close_to((7 * eighth / 2e9 + eighth / 8.3e9) / (3.0 * I)).epsilon(1e-12));
+}
+
+TEST_CASE("beam: Euler's load of a uniform column, and of one with a soft end by the equation of two sections") {
+    const double pi = std::numbers::pi;
+    const auto uniform = beam_pieces(paper_beam(PaperBeam::homogeneous, 50), kHardAndSoft, 0, 2, 0.0, 0.1);
+    const double I = 1e-8 / 12.0;
+    CHECK(euler_load_N(uniform, true) == close_to(pi * pi * 8.3e9 * I / (4.0 * 0.01)).epsilon(1e-11));
+    // from the clamp: D1 over a, D2 over b; tan(k1 a) tan(k2 b) = k2 / k1
+    struct TwoSections {
+        double a_m, b_m, D1, D2;
+    };
+    for (const auto& [a_m, b_m, D1, D2] : {TwoSections{0.08, 0.02, 0.7, 0.003}, TwoSections{0.02, 0.08, 0.003, 0.7},
+                                           TwoSections{0.05, 0.05, 0.1, 0.2}, TwoSections{0.09, 0.01, 1.0, 1e-6}}) {
+        CAPTURE(a_m);
+        const Section first{0.0, 0.0, D1, 0.0}, second{0.0, 0.0, D2, 0.0};
+        const double a = a_m, L = a_m + b_m;
+        const std::vector<BeamPiece> low{{0.0, a, first, 0.01}, {a, L, second, 0.01}};
+        const std::vector<BeamPiece> high{{0.0, b_m, second, 0.01}, {b_m, L, first, 0.01}};
+        const double P = euler_load_N(low, true);
+        CHECK(euler_load_N(high, false) == close_to(P).epsilon(1e-11));
+        const double k1 = std::sqrt(P / D1), k2 = std::sqrt(P / D2);
+        CHECK(k1 * a < pi / 2);
+        CHECK(k2 * b_m < pi / 2);
+        CHECK(std::tan(k1 * a) * std::tan(k2 * b_m) == close_to(k2 / k1).epsilon(1e-6));
+    }
+    // a rubber end on a practically rigid rest is a column by itself
+    const std::vector<BeamPiece> rubber{{0.0, 0.08, {0.0, 0.0, 1e6, 0.0}, 0.01},
+                                        {0.08, 0.1, {0.0, 0.0, 1.0, 0.0}, 0.01}};
+    CHECK(euler_load_N(rubber, true) == close_to(pi * pi / (4.0 * 4e-4)).epsilon(1e-4));
 }
 
 TEST_CASE("beam: gaps, equal axes and planes outside are refused") {

@@ -68,7 +68,9 @@ TEST_CASE("history: a result that does not fit on the disk leaves no file that c
 
 TEST_CASE("history: what is kept of a trial is what is read back") {
     const TemporaryFolder folder;
-    const KeptTrial trial = finished();
+    KeptTrial trial = finished();
+    trial.nodules[1].length_mm = 63.0;
+    trial.nodules[1].angle_deg = 4.8;
     CHECK(trial.found == 1);
     CHECK(trial.false_positives == 1);
     CHECK(trial.clock_s > 10.0);
@@ -83,6 +85,8 @@ TEST_CASE("history: what is kept of a trial is what is read back") {
     CHECK(back.clock_s == close_to(trial.clock_s).epsilon(1e-3));
     REQUIRE(back.nodules.size() == trial.nodules.size());
     CHECK(back.nodules[0].finding == Finding::found);
+    CHECK(back.nodules[1].length_mm == 63.0);
+    CHECK(back.nodules[1].angle_deg == close_to(4.8));
     REQUIRE(back.marks.size() == 2);
     CHECK(back.marks[0].hit);
     CHECK(back.marks[0].confidence == 4);
@@ -163,6 +167,18 @@ TEST_CASE("history: trials of one second do not overwrite each other, and only t
     CHECK(std::filesystem::exists(folder / "own.trial.json"));
     CHECK(history_files(folder.path()) == std::vector{later});
     CHECK(history_files(folder / "none").empty());
+}
+
+TEST_CASE("history: a trial of an earlier version, without lengths of its nodules, can be read") {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = keep_trial(finished(), folder.path());
+    Json json = parse_json(read_text(file), "kept");
+    for (Json& nodule : json["nodules"]) {
+        nodule.erase("length_mm");
+        nodule.erase("angle_deg");
+    }
+    write_text_atomically(folder / "earlier.json", json.dump());
+    CHECK(read_kept_trial(folder / "earlier.json").nodules[0].length_mm == 0.0);
 }
 
 TEST_CASE("history: a file that says more nodules were found than it names is refused") {

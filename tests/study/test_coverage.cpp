@@ -36,3 +36,29 @@ TEST_CASE("coverage: presses beside it, without depth, or not numbers leave it a
     CHECK(shares_of(c).at_least[0] == close_to(1.0));
     CHECK(make_coverage(0.0, 0.0, 100.0, 1.0, 0.006).n_x == 512);
 }
+
+TEST_CASE("coverage: shares of all or nothing are exactly 1 or 0, whatever the number of cells") {
+    for (const double width_m : {0.01, 0.049, 0.093, 0.12}) {
+        Coverage c = make_coverage(0.0, 0.0, width_m, 0.061, 0.006);
+        CHECK(shares_of(c).at_least[0] == 1.0);
+        cover(0.5 * width_m, 0.03, 1.0, 0.005, c);
+        CHECK(shares_of(c).at_least[0] == 0.0);
+        for (int level = 1; level < kPalpationLevels; ++level) CHECK(shares_of(c).at_least[level] == 1.0);
+    }
+}
+
+TEST_CASE("coverage: a press beside a rod, though within half its length of its middle, is not on it") {
+    const Target rod{"D1", 0.06, 0.06, 0.013, 0.063, 0.5 * std::numbers::pi};  // along y
+    const auto depth_after = [&](double x_m, double y_m) {
+        Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.006);
+        cover(x_m, y_m, 0.002, 0.003, c);
+        return deepest_on(c, rod);
+    };
+    CHECK(depth_after(0.085, 0.06) == 0.0);
+    CHECK(depth_after(0.06, 0.085) == close_to(0.003));
+    CHECK(depth_after(0.06, 0.0945) == 0.0);  // beyond its end
+    CHECK(depth_after(0.066, 0.04) == close_to(0.003));
+    Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.006);
+    cover(0.0303, 0.0303, 0.0, 0.004, c);
+    CHECK(deepest_on(c, {"point", 0.0304, 0.0304, 0.0, 0.0, 0.0}) == close_to(0.004));  // the cell that holds it
+}

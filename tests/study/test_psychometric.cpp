@@ -217,6 +217,52 @@ TEST_CASE("psychometric: a limit of the PSE at a level is there, where steps on 
     CHECK(std::abs(*fit.pse_ci.high - std::log(21.0 / 20.0)) < 1e-6);
 }
 
+// Few answers may make two tops: a wide flat one, and a narrow steep one between two levels.
+TEST_CASE("psychometric: the likeliest of several tops is found") {
+    const std::vector<double> comparisons{.8167, 1.1136, 1.3611, 1.5312, 1.6333, 1.875, 2.0, 2.25, 2.75, 3.75};
+    const auto answers = [&](const std::vector<std::int64_t>& stiffer, std::int64_t n) {
+        std::vector<LevelAnswers> levels;
+        for (std::size_t i = 0; i < comparisons.size(); ++i)
+            levels.push_back({std::log(comparisons[i] / 1.75), stiffer[i], n});
+        return levels;
+    };
+    const PsychometricFit steep = fit_psychometric(answers({0, 1, 0, 0, 1, 1, 5, 5, 6, 6}, 6), {});
+    CHECK(*steep.sd == close_to(0.0286).epsilon(2e-3));
+    CHECK(*steep.pse == close_to(0.1013).epsilon(1e-3));
+    CHECK(steep.lapse == close_to(0.05));
+    CHECK(steep.deviance == close_to(6.371).epsilon(1e-3));
+    const PsychometricFit flatter = fit_psychometric(answers({0, 0, 1, 1, 0, 5, 5, 8, 8, 8}, 8), {});
+    CHECK(*flatter.sd == close_to(0.0886).epsilon(2e-3));
+    CHECK(flatter.deviance == close_to(7.673).epsilon(1e-3));
+}
+
+TEST_CASE("psychometric: no curve of a dense grid is likelier, for drawn answers of few") {
+    const std::uint64_t seed = 20261128;
+    CAPTURE(seed);
+    Random random(seed);
+    for (int set = 0; set < 60; ++set) {
+        CAPTURE(set);
+        std::vector<LevelAnswers> levels;
+        const double sd = random.uniform(0.03, 0.4), pse = random.uniform(-0.2, 0.2), lapse = random.uniform(0.0, 0.05);
+        const int n = 4 + static_cast<int>(random.below(5));
+        for (int i = 0; i < 10; ++i) {
+            LevelAnswers level{-0.8 + 0.16 * i + random.uniform(-0.03, 0.03), 0, n};
+            for (int k = 0; k < n; ++k)
+                level.stiffer += random.uniform() < probability_stiffer(level.x, {pse, sd, lapse});
+            levels.push_back(level);
+        }
+        const PsychometricFit fit = fit_psychometric(levels, {});
+        double greatest = -std::numeric_limits<double>::infinity();
+        for (double u = std::log(0.004); u < std::log(2.0); u += 0.15) {
+            for (double at = -0.8; at < 0.8; at += 0.01) {
+                for (const double l : {0.0, 0.01, 0.03, 0.05})
+                    greatest = std::max(greatest, log_likelihood(levels, {at, std::exp(u), l}));
+            }
+        }
+        CHECK(fit.log_likelihood >= greatest - 1e-7);
+    }
+}
+
 TEST_CASE("psychometric: the curve, its lapse and the just noticeable difference") {
     const PsychometricCurve curve{0.1, 0.3, 0.04};
     CHECK(probability_stiffer(0.1, curve) == close_to(0.5));

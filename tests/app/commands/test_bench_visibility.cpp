@@ -93,3 +93,9 @@ TEST_CASE("bench visibility: a force that the profile cannot reach is refused") 
     CHECK(nothing.status == 2);
     CHECK(contains(nothing.err, "found a tissue without nodules"));
 }
+
+TEST_CASE("bench visibility: Ctrl-C ends it, as it does any command that keeps nothing") {
+    CHECK(
+        shell("timeout --preserve-status -s INT 4 " PALPA_PROGRAM " bench visibility --width-px 2560 --height-px 1600")
+            .status == 130);
+}

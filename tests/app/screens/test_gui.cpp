@@ -4,11 +4,15 @@
 #include <cstring>
 #include <doctest/doctest.h>
 #include <imgui.h>
+#include <numbers>
 
 #include "app/screens/font.h"
 #include "app/screens/gui.h"
+#include "app/screens/nodule_outline.h"
 #include "app/screens/widgets.h"
+#include "study/score.h"
 #include "tests/app/screens/typing.h"
+#include "tests/close_to.h"
 #include "tests/off_screen.h"
 
 using namespace palpa;
@@ -28,6 +32,7 @@ struct Form {
     std::string shortcuts;
     ImVec2 button{};
     bool focus = true;
+    bool enabled = true;  // the button
 
     void frame() {
         std::vector<Sample> samples;
@@ -43,7 +48,7 @@ struct Form {
         if (focus) ImGui::SetKeyboardFocusHere();
         focus = false;
         entered += ImGui::InputText("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
-        clicks += ImGui::Button("press", ImVec2(100.0f, 50.0f));
+        clicks += big_button("press", "", {100.0f, 50.0f / gui.mm(), enabled}, gui);
         const ImVec2 at = ImGui::GetItemRectMin();
         button = ImVec2(at.x + 20.0f, at.y + 20.0f);
         ImGui::End();
@@ -99,6 +104,31 @@ TEST_CASE("gui: Enter works again after it has ended the typing") {
     form.tap(SDLK_RETURN);
     form.frames(4);
     CHECK(form.entered == 2);
+}
+
+TEST_CASE("gui: a button that is disabled while the keyboard is on it takes no Enter and no Space") {
+    Form form;
+    form.frames(4);
+    form.tap(SDLK_ESCAPE);  // leaves the field
+    form.frames(4);
+    form.tap(SDLK_DOWN);
+    form.frames(4);
+    form.tap(SDLK_SPACE);
+    form.frames(4);
+    REQUIRE(form.clicks == 1);
+    form.enabled = false;
+    for (const SDL_Keycode key : {SDLK_RETURN, SDLK_SPACE}) {
+        form.tap(key);
+        form.frames(4);
+    }
+    form.click();
+    form.frames(4);
+    CHECK(form.clicks == 1);
+    form.enabled = true;
+    form.frames(2);
+    form.click();
+    form.frames(4);
+    CHECK(form.clicks == 2);
 }
 
 TEST_CASE("gui: quick clicks are all counted, and shortcuts come one by one") {
@@ -196,4 +226,19 @@ TEST_CASE("gui: F12 stops at once, also while a field takes letters and before a
     form.frames(2);
     CHECK_FALSE(form.gui.take_stop());
     CHECK(std::string(form.text) == "a");
+}
+
+TEST_CASE("gui: the outline of a long nodule is a rod with round ends along its angle, and of a round one a circle") {
+    const study::Target rod{"D1", 20.0, 30.0, 13.4, 63.2, std::numbers::pi * 4.8 / 180.0};
+    const Outline outline = outline_of({20.0, 30.0}, 13.4, 63.2, 4.8);
+    double furthest = 0.0, around = 0.0;
+    for (std::size_t i = 0; i < kOutlinePoints; ++i) {
+        CHECK(study::distance_m(rod, {outline[i].x(), outline[i].y()}) == close_to(6.7).epsilon(1e-9));
+        furthest = std::max(furthest, (outline[i] - Eigen::Vector2d(20.0, 30.0)).norm());
+        around += (outline[(i + 1) % kOutlinePoints] - outline[i]).norm();
+    }
+    CHECK(furthest == close_to(31.6).epsilon(1e-3));
+    CHECK(around == close_to(std::numbers::pi * 13.4 + 2.0 * (63.2 - 13.4)).epsilon(1e-3));
+    for (const Eigen::Vector2d& p : outline_of({1.0, 2.0}, 8.0, 3.0, 45.0))  // no longer than its diameter
+        CHECK((p - Eigen::Vector2d(1.0, 2.0)).norm() == close_to(4.0).epsilon(1e-9));
 }
