@@ -51,8 +51,9 @@ struct RollingMesh {
     double reach_m = 0.0;                       // distance beyond an inclusion at which T has faded to 0
 };
 // Chooses contact_m so that sqrt(R d) / contact_m > 4 at the least depth, as long as at most about 600 nodes are then
-// under the tool. coarseness 1 is meant for maps, larger values are for quick tests. 0.5 is for a check: it halves
-// every spacing, however many nodes that needs. Throws LoadError or MaterialError for a model that cannot be computed.
+// under the tool. coarseness 1 is meant for maps, larger values are for quick tests and for estimates of the error: they
+// make every spacing that much wider. 0.5 is for a check: it halves every spacing, however many nodes that needs, but
+// surface_m, which no block of more than 60 cells from its middle to a side has finer. Throws LoadError or MaterialError for a model that cannot be computed.
 RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness = 1.0);
 
 // G at offsets of (i, j) spacings, i, j >= 0: value[j n_x + i], m/N. along_x, along_y: how far the point at that offset

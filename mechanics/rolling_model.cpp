@@ -11,9 +11,9 @@
 namespace palpa::mechanics {
 namespace {
 
-constexpr int kMostInPatch = 600;   // contact nodes under the tool
-constexpr int kMostSideCells = 60;  // of the mesh of S, over half the block
-constexpr double kShortest = 0.25;  // length of a cylinder, in spacings
+constexpr int kMostInPatch = 600;        // contact nodes under the tool
+constexpr double kMostSideCells = 60.0;  // of the mesh of S, over half the block
+constexpr double kShortest = 0.25;       // length of a cylinder, in spacings
 
 double tool_reach_m(const RollingModel& model) {
     const double d = std::min(model.greatest_depth_m, model.radius_m);
@@ -81,11 +81,13 @@ RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness) {
     check_model(model);
     RollingMesh mesh;
     const double contact_radius_m = std::sqrt(model.radius_m * std::min(model.least_depth_m, model.radius_m));
-    const double least_m = std::min(1.0, coarseness) * least_spacing_m(model);
-    mesh.contact_m = std::max(contact_radius_m / 4.35 * coarseness, least_m);
+    mesh.contact_m = coarseness * std::max(contact_radius_m / 4.35, least_spacing_m(model));
     if (model.shape == IndenterShape::cylinder) {
         // so that each row of nodes stands for one of equal cells along the cylinder
-        const double cells = std::ceil(model.length_m / mesh.contact_m - 1e-9);
+        // and coarser meshes have fewer, so that their difference tells an error
+        const double usual = std::ceil(model.length_m * coarseness / mesh.contact_m - 1e-9);
+        const double cells = coarseness > 1.0 ? std::max(1.0, std::round(usual / coarseness))
+                                              : std::ceil(model.length_m / mesh.contact_m - 1e-9);
         if (model.length_m < kShortest * mesh.contact_m) {
             throw LoadError(text("rolling: cylinder of ", 1e3 * model.length_m, " mm length; must be at least ",
                                  1e3 * kShortest * mesh.contact_m, " mm, a quarter of the nodes' spacing under it"));
@@ -94,8 +96,8 @@ RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness) {
     }
     for (std::size_t c = 0; c < 2; ++c) {
         const double half_m = 0.5 * model.size_m[c];
-        const double cells = std::ceil(half_m / (model.size_m[2] / 12.0 * coarseness));
-        mesh.surface_m[c] = half_m / std::clamp(cells, 4.0, static_cast<double>(kMostSideCells));
+        const double cells = std::clamp(std::ceil(half_m / (model.size_m[2] / 12.0)), 4.0, kMostSideCells);
+        mesh.surface_m[c] = half_m / std::clamp(std::ceil(cells / coarseness - 1e-9), 3.0, kMostSideCells);
     }
     mesh.cells_across = std::max(2.0, 8.0 / coarseness);
     mesh.reach_m = 0.8 * model.size_m[2];

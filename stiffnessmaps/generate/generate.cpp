@@ -149,6 +149,10 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
 std::string error_estimate(const GenerateOptions& options, const MapTask& task, const Map& map) {
     try {
         const MapTask coarser = task_of(options, MeshSet::coarser);
+        constexpr double kAsFine =
+            1.2;  // a cylinder shorter than the nodes' spacing has one row of nodes, and no fewer
+        if (coarser.mesh.contact_m < kAsFine * task.mesh.contact_m)
+            return " Error of the meshes: not estimated, there are no coarser ones under so short a tool.";
         compute_windows(options, coarser, MeshSet::coarser, "estimating");
         Differences found;
         convergence_json(task, coarser, map, found);
@@ -215,6 +219,9 @@ void check(const GenerateOptions& options, const MapTask& task, const MapTask& r
     if (is_rough(task))
         found +=
             "; tangential force " + files::short_number(100.0 * differences.largest_tangential) + " % of it at most";
+    const auto halved = [&](std::size_t c) { return refined.mesh.surface_m[c] < 0.6 * task.mesh.surface_m[c]; };
+    if (!halved(0) || !halved(1))
+        found += "; the mesh of what the block's sides change is not refined, it has its limit";
     map.source.how =
         map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
     files::write_text_atomically(without_slash(options.output) / "map.json", files::json_text(map_json(map)));

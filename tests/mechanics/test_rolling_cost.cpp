@@ -2,8 +2,10 @@
 
 #include "mechanics/rolling_cost.h"
 #include "mechanics/rolling_mesh.h"
+#include "tests/close_to.h"
 
 using namespace palpa::mechanics;
+using namespace palpa::test;
 
 namespace {
 
@@ -33,6 +35,31 @@ TEST_CASE("cost: the shipped phantom is affordable, refined once for its check t
             MESSAGE(cost.unknowns << " unknowns, " << 1e-9 * cost.memory_bytes << " GB, " << cost.time_s << " s");
             CHECK(affordable(cost));
         }
+    }
+}
+
+// A deep press on a large block meets the bounds on nodes and cells; an estimate of the error needs meshes beyond them.
+TEST_CASE("rolling meshes: coarser ones are coarser everywhere, also where the usual ones are as fine as they may be") {
+    RollingModel deep = silicone();
+    deep.size_m = {0.5, 0.9, 0.025};
+    deep.radius_m = 0.03;
+    deep.least_depth_m = 0.0002;
+    RollingModel cylinder = deep;
+    cylinder.shape = IndenterShape::cylinder;
+    cylinder.length_m = 0.02;
+    for (const RollingModel& model : {silicone(), deep, cylinder}) {
+        const RollingMesh usual = choose_rolling_mesh(model), coarser = choose_rolling_mesh(model, 1.5);
+        CHECK(coarser.contact_m / usual.contact_m == close_to(1.5).epsilon(0.12));
+        for (const std::size_t c : {0U, 1U})
+            CHECK(coarser.surface_m[c] / usual.surface_m[c] == close_to(1.5).epsilon(0.12));
+        CHECK(usual.cells_across / coarser.cells_across == close_to(1.5));
+    }
+    for (const int rows : {2, 3, 5}) {  // short cylinders
+        CAPTURE(rows);
+        cylinder.length_m = 0.02;
+        cylinder.length_m = rows * 0.99 * choose_rolling_mesh(cylinder).contact_m;
+        const RollingMesh usual = choose_rolling_mesh(cylinder);
+        CHECK(choose_rolling_mesh(cylinder, 1.5).contact_m > 1.3 * usual.contact_m);
     }
 }
 
