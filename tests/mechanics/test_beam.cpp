@@ -90,7 +90,6 @@ TEST_CASE("beam: Euler's load of a uniform column, and of one with a soft end by
     };
     for (const auto& [a_m, b_m, D1, D2] : {TwoSections{0.08, 0.02, 0.7, 0.003}, TwoSections{0.02, 0.08, 0.003, 0.7},
                                            TwoSections{0.05, 0.05, 0.1, 0.2}, TwoSections{0.09, 0.01, 1.0, 1e-6}}) {
-        CAPTURE(a_m);
         const Section first{0.0, 0.0, D1, 0.0}, second{0.0, 0.0, D2, 0.0};
         const double a = a_m, L = a_m + b_m;
         const std::vector<BeamPiece> low{{0.0, a, first, 0.01}, {a, L, second, 0.01}};
