@@ -95,6 +95,7 @@ void interrupt_study_trial(Interruption why_interrupted, platform::Window& windo
     if (!why.empty()) return stop_study(why, run);
     if (why_interrupted == Interruption::untouched) return repeat_untouched(run);
     if (why_interrupted == Interruption::no_level) return repeat_without_level(run);
+    if (why_interrupted == Interruption::overslept) return repeat_unseen(run);
     wait_for_device(true, run);
 }
 

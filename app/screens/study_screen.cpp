@@ -258,15 +258,16 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
     const char* text = no_pressure ? words::kDeviceNoPressure
                        : step.here ? words::kDeviceIsBack
                                    : words::kDeviceMissing;
-    title(step.no_level && step.here    ? words::kNothingFelt
-          : step.untouched && step.here ? words::kNothingTouched
-                                        : words::filled(text, {device}));
+    title(step.no_level && step.here                     ? words::kNothingFelt
+          : (step.untouched || step.unseen) && step.here ? words::kNothingTouched
+                                                         : words::filled(text, {device}));
     if (step.no_level) {
         const calibration::Profile& profile = due_scene(run).plan->profile;
         warning_paragraph(words::filled(words::kWithoutLevel, {std::string(name_of(profile.level)), profile.id}));
     }
     if (step.left) paragraph(words::kTrialInterrupted);
     if (step.untouched) paragraph(words::kTimeOverUntouched);
+    if (step.unseen) paragraph(words::kTimeOverUnseen);
     if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
         warning_paragraph(words::kNeedsPressure);

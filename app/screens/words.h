@@ -629,6 +629,10 @@ inline constexpr const char* kPenNoPressure = "Device check: the pen does not me
 inline constexpr const char* kTrialWaits =
     "This trial is done with the {}. Connect it or switch it on; the app notices it within a second.";
 inline constexpr const char* kNothingTouched = "The time is over";
+inline constexpr const char* kTimeOverUnseen =
+    "It was over while this app was out of sight, so the trial does not count and is repeated. Choose Start when you "
+    "are "
+    "ready.";
 inline constexpr const char* kTimeOverUntouched =
     "Nothing was touched, so nothing is counted, and this part is repeated. Choose Start when you are ready.";
 inline constexpr const char* kTrialInterrupted =

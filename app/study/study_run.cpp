@@ -381,11 +381,13 @@ void begin_step(StudyRun& run) {
     if (device->here && !left_elsewhere(run)) enter(step::Trial{}, run);  // in a forced choice, the same interval
 }
 
-void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false, left, false}, run); }
+void wait_for_device(bool left, StudyRun& run) { enter(step::Device{.left = left}, run); }
 
-void repeat_untouched(StudyRun& run) { enter(step::Device{false, false, false, true}, run); }
+void repeat_untouched(StudyRun& run) { enter(step::Device{.untouched = true}, run); }
 
-void repeat_without_level(StudyRun& run) { enter(step::Device{false, false, true, false, true}, run); }
+void repeat_unseen(StudyRun& run) { enter(step::Device{.unseen = true}, run); }
+
+void repeat_without_level(StudyRun& run) { enter(step::Device{.left = true, .no_level = true}, run); }
 
 void give_feedback(int found, int missed, int false_marks, StudyRun& run) {
     enter(step::Feedback{found, found + missed, false_marks}, run);

@@ -79,6 +79,7 @@ void begin_step(StudyRun& run);                                               //
 void wait_for_device(bool left, StudyRun& run);  // instead of a trial; left: the device went during it
 void repeat_without_level(StudyRun& run);        // the touches of the trial gave no force
 void repeat_untouched(StudyRun& run);            // the trial's time was over before anything was touched
+void repeat_unseen(StudyRun& run);               // it was over while the app was out of sight
 void trial_finished(StudyRun& run);              // the trial is on the disk
 // The same for practice, which tells what was found.
 void give_feedback(int found, int missed, int false_marks, StudyRun& run);

@@ -29,6 +29,7 @@ struct Device {              // a trial is due, and its device is not connected,
     bool connected = false;  // likewise
     bool left = false;       // it went during the trial, which begins again
     bool untouched = false;  // the trial's time was over before anything was touched; it begins again
+    bool unseen = false;     // the time went by while the app was out of sight; it begins again
     bool no_level = false;   // touches lacked the level that the profile reads, so that no force came of them
 };
 struct Present {};   // an interval that the experimenter presents

@@ -473,6 +473,7 @@ const palpaTrials = (() => {
             rememberNames('palpa-deleted', [...deleted(), codeOf(name)]);
         }
         noteNames();
+        lastWord = ''; // it may be of one of them
         await saveAgain(); // there may be room now
     };
 

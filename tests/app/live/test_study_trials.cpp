@@ -167,7 +167,7 @@ TEST_CASE(
     }
     desk.step();
     REQUIRE(at<step::Device>(desk.run()));
-    CHECK(std::get<step::Device>(desk.run().step).left);
+    CHECK(std::get<step::Device>(desk.run().step).unseen);
     CHECK(desk.run().progress.finished.empty());
     const auto events = read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
     CHECK(contains(events, "\tinterrupted\t"));

@@ -263,9 +263,9 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         run->keeping_since_s.reset();
         run->on_tablet = false;
         run->where.clear();
-        run->step = step::Device{false, true};
+        run->step = step::Device{.connected = true};
         check_case(session, screens, c, "study-device-gone", screen);
-        run->step = step::Device{true, true, true, false, true};
+        run->step = step::Device{.here = true, .connected = true, .left = true, .no_level = true};
         check_case(session, screens, c, "study-nothing-felt", screen);
         run->warnings.clear();
     }
