@@ -60,7 +60,7 @@ void draw_marks(const Shown& shown, const session::Debrief& debrief, const std::
         if (mark.confidence > 0) word += words::filled(words::kConfidenceOf, {std::to_string(mark.confidence)});
         labels.push_back({at, word});
     }
-    place_labels(labels, names, mm, draw);
+    place_labels(labels, names, static_cast<float>(shown.state.screen.x_px), mm, draw);
 }
 
 // A little is not nothing, and nearly all not all.

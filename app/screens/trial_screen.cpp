@@ -308,7 +308,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
         labels.push_back({at, std::to_string(i + 1) + sure});
     }
-    place_labels(labels, names, gui.mm(), draw);
+    place_labels(labels, names, static_cast<float>(shown.state.screen.x_px), gui.mm(), draw);
     draw_pen(shown, gui, draw);
     draw_side_view(shown, gui);
     draw_pins_inset(shown, gui);

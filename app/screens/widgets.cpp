@@ -7,6 +7,7 @@
 #include <cstring>
 #include <imgui_internal.h>
 #include <numbers>
+#include <optional>
 
 #include "app/screens/words.h"
 
@@ -293,7 +294,8 @@ PanelArea plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::stri
     return {at.x, at.y, at.x + size.x, at.y + size.y};
 }
 
-std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float mm) {
+std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float left_px,
+                                   float mm) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     for (const Label& label : labels)
         taken.push_back({label.at.x - mm, label.at.y - mm, label.at.x + mm, label.at.y + mm});
@@ -302,23 +304,28 @@ std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector
         const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
         const float off_px = 2.4f * mm;
         PanelArea area{};
-        for (int k = 0; k < 8; ++k) {
+        std::optional<PanelArea> seen;  // the first place where nothing cuts it off
+        bool free = false;
+        for (int k = 0; k < 8 && !free; ++k) {
             const float x0 = k % 2 == 0 ? label.at.x + off_px : label.at.x - off_px - size.x;
             const float step = static_cast<float>(k / 2) * 0.9f * size.y;
             const float y0 = label.at.y - 1.2f * size.y + (k / 2 % 2 == 0 ? step : -step);
             area = {x0, y0, x0 + size.x, y0 + size.y};
-            const bool free =
+            if (area.x0 < left_px || area.x1 > screen.x || area.y0 < 0.0f) continue;
+            if (!seen) seen = area;
+            free =
                 std::none_of(taken.begin(), taken.end(), [&](const PanelArea& other) { return overlap(area, other); });
-            if (free && area.x0 >= 0.0f && area.x1 <= screen.x && area.y0 >= 0.0f) break;
         }
+        if (!free && seen) area = *seen;
         taken.push_back(area);
         out.push_back(area);
     }
     return out;
 }
 
-void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float mm, ImDrawList& draw) {
-    const std::vector<PanelArea> areas = label_areas(labels, taken, mm);
+void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float left_px, float mm,
+                  ImDrawList& draw) {
+    const std::vector<PanelArea> areas = label_areas(labels, taken, left_px, mm);
     for (std::size_t i = 0; i < labels.size(); ++i)
         plated_text(draw, ImVec2(areas[i].x0, areas[i].y0), kInk, labels[i].text);
 }

@@ -106,9 +106,11 @@ struct Label {
     std::string text;
 };
 // Returns where each label goes beside its mark: the first of eight places where it covers no mark, no other label and
-// nothing that is `taken`, and stays in the window; if there is none, the last.
-std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float mm);
-void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float mm, ImDrawList& draw);
+// nothing that is `taken`, and stays in the window right of left_px; if there is none, the first that stays there.
+std::vector<PanelArea> label_areas(const std::vector<Label>& labels, std::vector<PanelArea> taken, float left_px,
+                                   float mm);
+void place_labels(const std::vector<Label>& labels, const std::vector<PanelArea>& taken, float left_px, float mm,
+                  ImDrawList& draw);
 // Says that the window has no room for controls.
 void draw_too_small();
 

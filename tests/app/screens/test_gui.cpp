@@ -197,7 +197,7 @@ TEST_CASE("gui: a mark's label covers no name of a nodule, no mark and no other 
     const std::vector<PanelArea> names{{210.0f, 90.0f, 290.0f, 112.0f}, {150.0f, 60.0f, 190.0f, 85.0f}};
     const std::vector<Label> labels{{ImVec2(200.0f, 100.0f), "1 false positive, confidence 4"},
                                     {ImVec2(205.0f, 104.0f), "2 false positive"}};
-    const std::vector<PanelArea> areas = label_areas(labels, names, mm);
+    const std::vector<PanelArea> areas = label_areas(labels, names, 0.0f, mm);
     REQUIRE(areas.size() == 2);
     const auto apart = [](const PanelArea& a, const PanelArea& b) {
         return a.x1 <= b.x0 || b.x1 <= a.x0 || a.y1 <= b.y0 || b.y1 <= a.y0;
@@ -207,6 +207,9 @@ TEST_CASE("gui: a mark's label covers no name of a nodule, no mark and no other 
         for (const PanelArea& name : names) CHECK(apart(area, name));
         for (const Label& mark : labels) CHECK_FALSE(area.holds(mark.at.x, mark.at.y));
     }
+    // many marks on one place beside a panel: labels may cover each other, but the panel covers none
+    const std::vector<Label> crowd(12, {ImVec2(200.0f, 100.0f), "2 duplicate"});
+    for (const PanelArea& area : label_areas(crowd, {}, 190.0f, mm)) CHECK(area.x0 >= 190.0f);
 }
 
 TEST_CASE("gui: F12 stops at once, also while a field takes letters and before any frame is drawn") {
