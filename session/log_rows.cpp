@@ -70,7 +70,10 @@ files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, co
     json["nodules"] = files::Json::array();
     for (const stiffnessmaps::Nodule& nodule : plan.nodules) {
         json["nodules"].push_back({{"id", nodule.id}, {"x_mm", 1e3 * nodule.x_m}, {"y_mm", 1e3 * nodule.y_m}});
-        if (nodule.diameter_m) json["nodules"].back()["diameter_mm"] = 1e3 * *nodule.diameter_m;
+        files::Json& written = json["nodules"].back();
+        if (nodule.diameter_m) written["diameter_mm"] = 1e3 * *nodule.diameter_m;
+        if (nodule.length_m) written["length_mm"] = 1e3 * *nodule.length_m;
+        if (nodule.angle_deg) written["angle_deg"] = *nodule.angle_deg;
     }
     json["notes"] = scene::notes_of(scene, plan);
     return json;

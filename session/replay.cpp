@@ -16,9 +16,9 @@ void note_nodules(const scene::Plan& plan, const scene::State& state, ReplayResu
     const double lag_m = scene::seen_lag_m(state.avatar);
     bool beside = true;
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
-        const stiffnessmaps::Nodule& nodule = plan.nodules[i];
-        const double radius_m = 0.5 * nodule.diameter_m.value_or(0.0);
-        const double distance_m = (state.touch.p_m - Eigen::Vector2d(nodule.x_m, nodule.y_m)).norm();
+        const study::Target nodule = place_of(plan.nodules[i]);
+        const double radius_m = 0.5 * nodule.diameter_m;
+        const double distance_m = study::distance_m(nodule, {state.touch.p_m.x(), state.touch.p_m.y()});
         if (distance_m <= radius_m + plan.indenter_radius_m) {
             result.over[i].lag_m = std::fmax(result.over[i].lag_m, lag_m);
         }

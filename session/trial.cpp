@@ -6,13 +6,19 @@
 #include "scene/mapping.h"
 
 namespace palpa::session {
+
+study::Target place_of(const stiffnessmaps::Nodule& n) {
+    const double angle_rad = n.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
+    return {"", n.x_m, n.y_m, n.diameter_m.value_or(0.0), n.length_m.value_or(0.0), angle_rad};
+}
+
 namespace {
 
 std::vector<study::Target> targets_of(const scene::Plan& plan) {
     std::vector<study::Target> targets;
     for (const stiffnessmaps::Nodule& n : plan.nodules) {
-        const double angle_rad = n.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
-        targets.push_back({n.id, n.x_m, n.y_m, n.diameter_m.value_or(0.0), n.length_m.value_or(0.0), angle_rad});
+        targets.push_back(place_of(n));
+        targets.back().id = n.id;
     }
     return targets;
 }

@@ -92,6 +92,9 @@ struct Debrief {
 };
 Debrief debrief(const scene::Plan& plan, const Trial& trial);
 
+// Where a nodule is, for study/score.h; without its id.
+study::Target place_of(const stiffnessmaps::Nodule& nodule);
+
 // Returns what `palpa run --json` reports of a trial.
 files::Json trial_json(const scene::Plan& plan, const Trial& trial);
 

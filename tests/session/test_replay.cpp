@@ -277,6 +277,15 @@ TEST_CASE("replay: over the nodules the avatar lags at least 0.5 mm and 5 times 
     }
     CHECK(session.state.counters.dropped_steps == 0);
     CHECK(session.state.counters.off_tissue == 0);
+    // the same place as one end of a long nodule
+    auto with_rod = std::make_shared<Plan>(*session.plan);
+    with_rod->nodules[0].x_m += 0.02;
+    with_rod->nodules[0].length_m = *with_rod->nodules[0].diameter_m + 0.04;
+    with_rod->nodules[0].angle_deg = 0.0;
+    session.plan = with_rod;
+    const Trace trace = read_trace(default_trace());
+    begin_replay({}, trace.info, std::nullopt, session);
+    CHECK(replay(trace, session).over[0].lag_m == close_to(result.over[0].lag_m));
     Trace short_trace = read_trace(default_trace());
     short_trace.samples.resize(1);  // before the first nodule
     Session not_there;
