@@ -116,8 +116,8 @@ void sample_map(const SampleOptions& options) {
                                {"y_mm", options.y_mm},
                                {"force_N", force_N},
                                {"depth_mm", 1e3 * answer.depth_m},
-                               {"tangential_x_N", along_x_N},
-                               {"tangential_y_N", along_y_N},
+                               {"resists_x_N", along_x_N},
+                               {"resists_y_N", along_y_N},
                                {"saturated", answer.saturated},
                                {"inside", place.inside},
                                {"measured", place.measured}};
@@ -137,7 +137,10 @@ void sample_map(const SampleOptions& options) {
 void add_sample(CLI::App& maps) {
     auto options = std::make_shared<SampleOptions>();
     CLI::App* command =
-        maps.add_subcommand("sample", "Look up the depth for a force, or the force for a depth, at one place");
+        maps.add_subcommand("sample",
+                            "Look up the depth for a force, or the force for a depth, at one place, and how the tissue "
+                            "resists the avatar there (by the slope of its energy; the arrays of tangential force are "
+                            "shown by `palpa maps export`)");
     command->add_option("MAP", options->map, "map folder")->required();
     command->add_option("--x-mm", options->x_mm, "x of the place in the map's frame")
         ->required()

@@ -14,8 +14,10 @@
 #include "app/live/live.h"
 #include "app/screens/settings.h"
 #include "app/web/browser_keeper.h"
+#include "calibration/profile_file.h"
 #include "files/input_error.h"
 #include "platform/web/browser.h"
+#include "scene/scene.h"
 #include "study/protocol.h"
 
 // clang-format off
@@ -109,15 +111,27 @@ std::string study_folder(const std::string& name, const study::Protocol& protoco
     return "/studies/" + folder;
 }
 
-// Conditions that drive a device need the desk's machine; the menu does not offer them either (studies.js).
-bool needs_devices(const std::filesystem::path& protocol) {
+// Conditions that drive a device or read a pen's counts need the desk; the menu does not offer them either (studies.js).
+bool needs_desk(const std::filesystem::path& protocol) {
     const auto drives = [](const study::Condition& condition) {
         const bool device =
             condition.modality == study::Modality::shape_display || condition.modality == study::Modality::tangible;
         return device && !condition.scene.empty();
     };
+    const auto reads_counts = [](const study::Condition& condition) {
+        if (condition.scene.empty()) return false;
+        try {
+            const std::filesystem::path assets = "/assets";
+            const scene::Scene scene = scene::read_scene(assets / "scenes" / condition.scene, assets);
+            const auto profile = condition.profile.empty() ? scene.profile : assets / "profiles" / condition.profile;
+            return calibration::read_profile(profile).level == calibration::LevelField::pressure_raw;
+        } catch (const files::InputError&) {
+            return false;  // whoever chooses it is told what is wrong
+        }
+    };
     const study::Protocol read = study::read_protocol(protocol);
-    return std::any_of(read.conditions.begin(), read.conditions.end(), drives);
+    return std::any_of(read.conditions.begin(), read.conditions.end(),
+                       [&](const study::Condition& one) { return drives(one) || reads_counts(one); });
 }
 
 // Chooses the study that the page's address names. Throws InputError if there is none of that name.
@@ -127,7 +141,7 @@ void choose_study(const std::string& name, RunOptions& options) {
     if (name.find('/') != std::string::npos || !std::filesystem::exists(file)) {
         std::set<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-            if (!needs_devices(entry.path())) names.insert(entry.path().stem().string());
+            if (!needs_desk(entry.path())) names.insert(entry.path().stem().string());
         }
         std::string known;
         for (const std::string& one : names) known += " " + one;

@@ -103,16 +103,22 @@ const palpaStudies = (() => {
 
     const inApp = async (path) => FS.readFile(`${kAssets}/${path}`, {encoding: 'utf8'});
 
-    // Conditions whose scene drives a device need the desk's machine. Of scenes that cannot be read it is not known. The program
-    // says what is wrong with a protocol that is none.
-    const needsDevices = async (protocol, read) => {
+    // Conditions whose scene drives a device, or whose calibration profile reads a pen's counts, need the desk's machine. Of
+    // scenes that cannot be read it is not known. The program says what is wrong with a protocol that is none.
+    const needsDesk = async (protocol, read) => {
+        const found = async (name, kind, beside) =>
+            await read(plain(`${beside}/${name}`)).catch(() => read(`${kind}/${name}`)).catch(() => inApp(`${kind}/${name}`)).catch(() => null);
         for (const condition of [protocol?.conditions].flat()) {
-            const {modality, scene} = Object(condition);
+            const {modality, scene, profile} = Object(condition);
+            if (!scene || modality === 'hand') continue;
+            const text = await found(scene, 'scenes', 'protocols');
             const key = {'shape-display': 'tactile', tangible: 'tangible'}[modality];
-            if (!key || !scene) continue;
-            const among = `scenes/${scene}`;
-            const text = await read(plain(`protocols/${scene}`)).catch(() => read(among)).catch(() => inApp(among)).catch(() => null);
-            if (text === null || key in Object(parse(text))) return true;
+            const itself = Object(parse(text ?? ''));
+            if (key && (text === null || key in itself)) return true;
+            const name = profile ?? itself.profile;
+            if (key || typeof name !== 'string') continue;
+            const its = await found(name, 'profiles', profile ? 'protocols' : 'scenes');
+            if (its !== null && Object(parse(its)).level === 'pressure_raw') return true;
         }
         return false;
     };
@@ -127,7 +133,7 @@ const palpaStudies = (() => {
                 const name = path.slice('protocols/'.length, -5);
                 const protocol = parse(await read(path));
                 const title = protocol?.name ?? name;
-                const needs = await needsDevices(protocol, read);
+                const needs = await needsDesk(protocol, read);
                 out.delete(name);
                 elsewhere.delete(name);
                 if (needs) elsewhere.set(name, title);

@@ -179,7 +179,7 @@ const certificate = ({folder}) => {
 test('the real desk by https: a wrong code pairs nothing, the right one does; the study comes from the desk after it', options, () => withDesk(async (browser, desk, where) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=short&participant=1');
-    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects paper softer threshold, or of a desk/);
+    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects softer threshold, or of a desk/);
     await page.click('#leave');
     await page.waitForURL((url) => url.search === '');
     await started(page);
@@ -493,13 +493,21 @@ test('a study with a linear tissue is refused in words before anybody begins', o
     await started(page);
 }, {protocols: {partly: {...protocol, conditions: [...protocol.conditions, {id: 'live', modality: 'pen', scene: 'linear.json'}]}}}));
 
-test('the list of studies knows by their scenes which ones drive devices, and a protocol that is none takes no other from it', options, () => withDesk(async (browser, desk) => {
+test('a study with a calibration profile that reads a pen\'s counts is refused in words before anybody begins', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await page.goto(`${desk.url}?protocol=paper&participant=7`);
+    await page.waitForFunction(() => document.getElementById('message-text').textContent.includes('cannot be run here'));
+    assert.match(await page.textContent('#message-text'), /conditions\[1\] 'Touchpad': found calibration profile 'bamboo', which reads pressure_raw/);
+    assert.deepEqual(await stored(page), []);
+}));
+
+test('the list of studies knows by their scenes which ones need the desk, and a protocol that is none takes no other from it', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;
     const check = async () => {
         const {studies, said} = await page.evaluate(() => palpaStudies.list());
         const names = studies.map(({name}) => name);
-        for (const name of ['typed', 'broken', 'odd', 'paper']) assert.ok(names.includes(name), `${name} in ${names}`);
-        for (const name of ['driven', 'four-displays']) assert.ok(!names.includes(name), `${name} in ${names}`);
+        for (const name of ['typed', 'broken', 'odd', 'softer', 'other']) assert.ok(names.includes(name), `${name} in ${names}`);
+        for (const name of ['driven', 'four-displays', 'paper', 'counts']) assert.ok(!names.includes(name), `${name} in ${names}`);
         assert.match(said, /^On the desk's machine only.*Driven/);
     };
     await open(browser, desk.url);
@@ -514,5 +522,7 @@ test('the list of studies knows by their scenes which ones drive devices, and a 
     broken: {...protocol, name: 'Broken', conditions: {a: 1}},
     odd: {name: 'Odd', conditions: [null, 5]},
     typed: {...protocol, name: 'Typed', conditions: [{id: 'pins', modality: 'shape-display', scene: 'default.json'}]},
+    counts: {...protocol, name: 'Counts', conditions: [{id: 'pen', modality: 'pen', scene: 'default.json', profile: 'bamboo.json'}]},
+    other: {...protocol, name: 'Other', conditions: [{id: 'pad', modality: 'touchpad', scene: 'touchpad.json', profile: 's-pen.json'}]},
     driven: {...protocol, name: 'Driven', conditions: [{id: 'soft', modality: 'tangible', scene: 'block-soft.json'}]},
 }}));
