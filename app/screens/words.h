@@ -692,7 +692,8 @@ inline constexpr const char* pageSendNow = "Send now";
 inline constexpr const char* pageExport = "Export to a file";
 inline constexpr const char* pageRemove = "Delete exported trials";
 inline constexpr const char* pageClose = "Close";
-inline constexpr const char* pageDrivesDevices = "On the desk's machine only, since they drive devices or read a pen's counts: {}.";
+inline constexpr const char* pageDrivesDevices =
+    "On the desk's machine only, since they drive devices or read a pen's counts: {}.";
 inline constexpr const char* pageStudies = "Start a study";
 inline constexpr const char* pageStudyCode = "Participant code: letters and digits (if empty, the study asks for it)";
 inline constexpr const char* pageStart = "Start";
