@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <vector>
 
 #include "files/text.h"
 
@@ -33,7 +34,60 @@ std::span<const Locking> measured(Element element) {
     return {};
 }
 
+// Displacement of the tip of a bar of 10 x 1 x 1 over that of Euler and Bernoulli, with 1, 2 and 3 cells across; Poisson's ratio
+// 0.3. Measured; docs/fem.md has the table.
+constexpr int kFewAcross = 3;
+struct Bending {
+    std::array<double, kFewAcross> cubes;
+    std::array<double, kFewAcross> long_cells;  // twice as long as thick; 0: not measured
+};
+constexpr Bending kBbarBends{{1.21, 0.98, 0.99}, {0.50, 0.77, 0.88}};
+constexpr Bending kHex8Bends{{0.65, 0.88, 0.94}, {}};
+constexpr Bending kTet4Bends{{0.22, 0.51, 0.69}, {}};
+
+// The planes of nodes of a box along an axis; empty if the nodes are no box's.
+std::array<std::vector<double>, 3> planes_of(const Eigen::Matrix3Xd& nodes_m) {
+    std::array<std::vector<double>, 3> planes;
+    std::size_t nodes = 1;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+        std::vector<double>& at = planes[static_cast<std::size_t>(c)];
+        for (Eigen::Index i = 0; i < nodes_m.cols(); ++i) at.push_back(nodes_m(c, i));
+        std::sort(at.begin(), at.end());
+        at.erase(std::unique(at.begin(), at.end()), at.end());
+        nodes *= at.size();
+    }
+    if (nodes != static_cast<std::size_t>(nodes_m.cols())) return {};
+    return planes;
+}
+
 }  // namespace
+
+std::string bending_warning(const FemCase& model) {
+    if (!model.mesh_file.empty() || model.problem.element == Element::hex8i) return "";
+    const auto planes = planes_of(model.problem.mesh.nodes_m);
+    if (planes[0].empty()) return "";
+    const auto size_m = [&](std::size_t c) { return planes[c].back() - planes[c].front(); };
+    const double longest_m = std::max({size_m(0), size_m(1), size_m(2)});
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto across = static_cast<int>(planes[c].size()) - 1;
+        const std::string axis(1, "xyz"[c]);
+        const auto holds = [&](const CaseSupport& one) { return one.name == axis + "min" || one.name == axis + "max"; };
+        if (across > kFewAcross || size_m(c) > 0.25 * longest_m) continue;
+        if (std::any_of(model.supports.begin(), model.supports.end(), holds)) continue;
+        const Element element = model.problem.element;
+        const Bending& bends = element == Element::tet4   ? kTet4Bends
+                               : element == Element::hex8 ? kHex8Bends
+                                                          : kBbarBends;
+        const auto k = static_cast<std::size_t>(across - 1);
+        const std::string on_long_cells =
+            bends.long_cells[k] > 0.0 ? ", " + files::short_number(bends.long_cells[k]) + " on cells twice as long"
+                                      : "";
+        return files::counted(across, "cell") + " across the body along " + axis + ": where it bends, " +
+               name_of(element) + " gives " + files::short_number(bends.cubes[k]) + " of the displacement on cubes" +
+               on_long_cells + " (the bar of docs/fem.md); hex8i bends right";
+    }
+    return "";
+}
 
 std::string locking_warning(const Problem& problem) {
     const std::span<const Locking> rows = measured(problem.element);

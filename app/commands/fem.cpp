@@ -58,6 +58,7 @@ double max_von_mises_Pa(const fem::FemResult& result) {
 std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemResult& result) {
     std::vector<std::string> out = model.warnings;
     if (const std::string locking = fem::locking_warning(model.problem); !locking.empty()) out.push_back(locking);
+    if (const std::string bending = fem::bending_warning(model); !bending.empty()) out.push_back(bending);
     if (result.linear != LinearRange::fine) {
         out.push_back("the linear range is left: " + files::short_number(100.0 * result.linear_ratio) +
                       " % (strain, rotation, or depth over thickness or width); amber above 10, red above 25");

@@ -1,6 +1,8 @@
+#include <cmath>
 #include <doctest/doctest.h>
 
 #include "fem/locking.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/fem/fem_cases.h"
 
@@ -47,4 +49,27 @@ TEST_CASE("locking: what is warned of is so, and grows with Poisson's ratio") {
         }
         CHECK(before > 1.5);
     }
+}
+
+TEST_CASE("bending: few cells across a bar that bends are told of, with what they give; what is held or hex8i never") {
+    const auto bar = [](const char* element, const char* cells, const char* held) {
+        const std::string box = std::string(R"({"box": {"size_mm": [80, 8, 8], "elements": )") + cells + "}}";
+        return case_of(case_text(box, element, std::string(R"([{"face": ")") + held + R"(", "fix": "xyz"}])",
+                                 R"([{"face": "xmax", "traction_Pa": [0, 0, -10]}])", gel(1e9, 0.3)));
+    };
+    CHECK(contains(
+        bending_warning(bar("hex8-bbar", "[10, 1, 1]", "xmin")),
+        "1 cell across the body along y: where it bends, hex8-bbar gives 1.21 of the displacement on cubes, 0.5 on"));
+    CHECK(contains(bending_warning(bar("tet4", "[20, 4, 2]", "xmin")), "2 cells across the body along z"));
+    CHECK(contains(bending_warning(bar("hex8", "[30, 4, 3]", "xmin")),
+                   "hex8 gives 0.94 of the displacement on cubes (the bar"));
+    CHECK(bending_warning(bar("hex8i", "[10, 1, 1]", "xmin")).empty());
+    CHECK(bending_warning(bar("hex8-bbar", "[40, 4, 4]", "xmin")).empty());
+    CHECK(bending_warning(bar("hex8-bbar", "[10, 4, 1]", "zmin")).empty());
+    CHECK(bending_warning(slab("hex8-bbar", 0.3)).empty());
+    // what is said is so: the tip over F L^3 / (3 E I)
+    const double right_m = 10.0 * 64e-6 * std::pow(0.08, 3) / (3.0 * 1e9 * std::pow(0.008, 4) / 12.0);
+    CHECK(*solved(bar("hex8-bbar", "[10, 1, 1]", "xmin")).skel_m / right_m == close_to(1.207).epsilon(2e-3));
+    CHECK(*solved(bar("hex8-bbar", "[5, 1, 1]", "xmin")).skel_m / right_m == close_to(0.504).epsilon(3e-3));
+    CHECK(*solved(bar("tet4", "[20, 2, 2]", "xmin")).skel_m / right_m == close_to(0.508).epsilon(3e-3));
 }
