@@ -146,6 +146,7 @@ void run_virtual_steps(std::span<const devices::PressRow> press, tactile::Virtua
         }
         if (tactile_step(time_s, touch ? &contact : nullptr, port, loop, record.command)) {
             port.send(time_s, record.command);
+            record.fault = port.guarded.guard.fault;
             if (!each(record)) return;
         }
         port.advance(tactile::kStep_s);

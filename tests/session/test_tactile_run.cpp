@@ -281,6 +281,25 @@ TEST_CASE("tactile run: when a fault began and ended stands in a file of its own
     CHECK(file_text(folder / "faults.tsv") == began + "\n0.06\tnone\n0.08\tnothing comes from the pins\n");
 }
 
+TEST_CASE(
+    "tactile run: a press beyond the arm's range in virtual time rests from its fault on, and nothing of that counts") {
+    const TactileScene slab(kArmLeads);
+    const TemporaryFolder folder;
+    const auto row = [](double t_s, double depth_m) {
+        devices::PressRow out;
+        out.t_s = t_s;
+        out.x_m = out.y_m = 0.02;
+        out.depth_m = depth_m;
+        return out;
+    };
+    const std::vector<devices::PressRow> press{row(0.0, 0.0), row(1.0, 0.1), row(2.0, 0.1)};  // as if 100 mm were meant
+    const TactileResult result = run_virtual(slab.tactile_plan(), {press, folder.path(), 1});
+    CHECK(result.devices.guard.fault == devices::Fault::out_of_range);
+    CHECK(result.steps.relaxed_steps > 1000);
+    CHECK(result.steps.held_steps < 1000);
+    CHECK(contains(file_text(folder / "faults.tsv"), "\tthe arm reports a depth outside of its range\n"));
+}
+
 TEST_CASE("tactile run: a step with its guard allocates nothing") {
     const TactileScene slab;
     const auto loop = make_tactile_loop(slab.tactile_plan());
