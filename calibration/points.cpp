@@ -51,10 +51,10 @@ void check_enough(const CalibrationRows& rows) {
 void check_unit(const CalibrationRows& rows) {
     const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
     const bool gf = rows.force_column == "force_gf";
-    if (highest_N > 60.0) {
+    if (highest_N > kMostForce_N) {
         throw files::bad_input(
             rows.file, rows.force_column, "forces up to " + files::short_number(highest_N) + " N",
-            "less than 60 N under a pen or finger (" +
+            "less than " + files::short_number(kMostForce_N) + " N under a pen or finger (" +
                 std::string(gf ? "is the column in gram-force?" : "gram-force? name the column force_gf;") +
                 " --any-force if it is right)");
     }

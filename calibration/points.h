@@ -27,6 +27,8 @@ struct CalibrationRows {
     std::vector<std::string> notes;  // for people, such as several sessions taken together
 };
 
+inline constexpr double kMostForce_N = 60.0;  // under a pen or finger; ten times a pen's full scale
+
 struct RowFilter {
     std::string column;
     std::string value;

@@ -94,4 +94,9 @@ struct TangibleMoment {
     double force_rms_percent = kNone;  // rendered minus wanted so far, against the greatest wanted force
 };
 
+// True while each drive has its relaxed value, which the device file names.
+inline bool is_relaxed(const TangibleMoment& moment) {
+    return moment.stopped || (*moment.fault != '\0' && !moment.held);
+}
+
 }  // namespace palpa::session

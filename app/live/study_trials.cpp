@@ -126,21 +126,6 @@ void check_letters(const study::Protocol& protocol) {
     }
 }
 
-// No browser reports the counts of a pen: such a condition would be repeated for ever. Throws InputError.
-void refuse_counts(const StudyRun& run) {
-    for (std::size_t i = 0; i < run.scenes.size(); ++i) {
-        const study::Condition& condition = run.protocol.conditions[i];
-        if (!run.scenes[i] || condition.typed_in) continue;
-        const calibration::Profile& profile = run.scenes[i]->plan->profile;
-        if (profile.level != calibration::LevelField::pressure_raw) continue;
-        throw files::bad_input(run.protocol.file.string(),
-                               "conditions[" + std::to_string(i) + "] " + files::shown(condition.id),
-                               "calibration profile " + files::shown(profile.id) + ", which reads pressure_raw",
-                               "one that reads pressure or contact_area: browsers report no others (palpa study run "
-                               "on the desk does)");
-    }
-}
-
 }  // namespace
 
 void load_study(const RunOptions& options, App& app) {
@@ -154,7 +139,7 @@ void load_study(const RunOptions& options, App& app) {
         study::refuse_mixed_ratings(protocol);
     StudyRun run = open_study_run(protocol, options.log, tablet ? "" : options.participant);
     run.on_tablet = tablet;
-    if (tablet) refuse_counts(run);
+    if (tablet) refuse_counts(run.protocol, run.scenes);
     run.first_run = options.first_run;
     if (tablet && !options.participant.empty()) enter_code(options.participant, run);
     app.doing = std::move(run);

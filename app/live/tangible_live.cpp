@@ -9,8 +9,8 @@ namespace {
 
 // Adds this moment to the press that the screen draws; another press begins anew.
 void add_to_press(const session::TangibleMoment& moment, TangibleShown& shown) {
-    constexpr double kStep_m = 2e-5;  // finer steps could not be told apart on a screen
-    if (!moment.pressed) return;
+    constexpr double kStep_m = 2e-5;                    // finer steps could not be told apart on a screen
+    if (!moment.pressed || is_relaxed(moment)) return;  // nothing is wanted of a relaxed device
     const bool began = shown.press.empty() || moment.ticks < shown.press.back().tick;
     if (began || !shown.was_pressed) shown.press.clear();
     if (!shown.press.empty() && std::abs(moment.depth_m - shown.press.back().depth_m) < kStep_m) return;

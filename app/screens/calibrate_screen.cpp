@@ -170,8 +170,9 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     if (!is_deactivated_by_enter()) return;
     guide.again = true;  // the next number is typed at once
     if (!std::isfinite(guide.shown_gf) && guide.note == words::kRecorded) return;
-    const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
-    const bool recorded = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording);
+    const double force_N = guide.shown_gf * calibration::kN_per_gf;
+    const bool good = force_N >= 0.0 && force_N <= calibration::kMostForce_N;  // a profile takes no more
+    const bool recorded = good && calibration::take_typed_N(force_N, recording);
     guide.note = !good ? words::kNotAForce : recorded ? words::kRecorded : words::kNotRecorded;
     if (recorded) guide.shown_gf = platform::kMissing;
 }

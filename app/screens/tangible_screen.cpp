@@ -44,9 +44,6 @@ void draw_soft_state(const TangibleShown& soft) {
     ImGui::TextUnformatted(words::kSoftRuns);
 }
 
-// Each drive has its relaxed value then, which the device file names.
-bool is_relaxed(const TangibleMoment& moment) { return moment.stopped || (*moment.fault != '\0' && !moment.held); }
-
 std::string rendered_title(const session::TangibleBody& body) {
     return words::filled(words::kRenderedForce, {body.rendered.empty() ? "-" : body.rendered});
 }

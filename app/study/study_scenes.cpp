@@ -87,6 +87,20 @@ StudyScenes load_study_scenes(const study::Protocol& protocol) {
     return scenes;
 }
 
+void refuse_counts(const study::Protocol& protocol, const StudyScenes& scenes) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const study::Condition& condition = protocol.conditions[i];
+        if (!scenes[i] || condition.typed_in) continue;
+        const calibration::Profile& profile = scenes[i]->plan->profile;
+        if (profile.level != calibration::LevelField::pressure_raw) continue;
+        throw files::bad_input(protocol.file.string(),
+                               "conditions[" + std::to_string(i) + "] " + files::shown(condition.id),
+                               "calibration profile " + files::shown(profile.id) + ", which reads pressure_raw",
+                               "one that reads pressure or contact_area: browsers report no others (palpa study run on "
+                               "the desk does)");
+    }
+}
+
 void note_typed_in(const StudyScenes& scenes, study::Protocol& protocol) {
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const study::Modality modality = protocol.conditions[i].modality;

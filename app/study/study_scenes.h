@@ -18,6 +18,10 @@ struct StudyScene {
 };
 using StudyScenes = std::vector<std::optional<StudyScene>>;
 
+// No browser reports the counts of a pen: trials whose calibration profile reads them would be repeated there for ever. Throws
+// InputError that names the condition.
+void refuse_counts(const study::Protocol& protocol, const StudyScenes& scenes);
+
 // Notes in the protocol which conditions' answers are typed in, for want of a device that the scene drives.
 void note_typed_in(const StudyScenes& scenes, study::Protocol& protocol);
 

@@ -83,7 +83,7 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     CHECK(form.recording->session.points.size() == 2);
     form.guide.again = true;
     frames(desk, 5);
-    for (const char letter : std::string("999999")) type(desk.window, letter);
+    for (const char letter : std::string("12000")) type(desk.window, letter);
     tap(desk.window, SDLK_RETURN);
     frames(desk, 16);
     CHECK(form.guide.note == words::kNotAForce);
