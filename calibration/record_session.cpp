@@ -71,6 +71,17 @@ bool has_points(const RecordOptions& options, const std::vector<CapturedPoint>& 
     return beside && above && below;
 }
 
+// Why the error of a band is not known.
+const char* what_is_missing(const RecordOptions& options, const std::vector<CapturedPoint>& points, int band) {
+    const double middle = options.range.lowest + (band + 0.5) * width(options) / options.bands;
+    bool inside = false, upper = false;
+    for (const CapturedPoint& point : points) {
+        inside = inside || band_of(options, point.level) == band;
+        upper = upper || point.level >= middle;
+    }
+    return !inside ? " (no point)" : upper ? " (too few points)" : " (no point in its upper half)";
+}
+
 }  // namespace
 
 CalibrationRows rows_of(const std::vector<CapturedPoint>& points) {
@@ -205,7 +216,7 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
         if (error <= options.goal) continue;
         places += (places.empty() ? "" : ", ") + round_percent(static_cast<double>(band) / options.bands) + " to " +
                   round_percent((band + 1.0) / options.bands) +
-                  (std::isnan(error) ? " (no point)" : " (" + round_percent(error) + ")");
+                  (std::isnan(error) ? what_is_missing(options, points, band) : " (" + round_percent(error) + ")");
     }
     if (out.repeats < options.least_repeats)
         out.missing = std::to_string(out.repeats) + " of " + std::to_string(options.least_repeats) + " repeats";

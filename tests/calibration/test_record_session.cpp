@@ -143,6 +143,14 @@ TEST_CASE("record: it is enough when every band is known to 5 %, and until then 
     CHECK_FALSE(knowledge_of(options, light.points).done);
     CHECK(contains(knowledge_of(options, light.points).missing, "not known to 5 %: 0 % to 5 % (no point)"));
 
+    std::vector<double> lighter = staircase(20);
+    std::erase_if(lighter, [](double level) { return level > 0.93; });
+    lighter.push_back(0.96);
+    RecordSession weak;
+    t_s = 0.0;
+    for (int i = 0; i < 6; ++i) t_s = press(options, lighter, t_s, 1.0 + 0.01 * normal(random), random, weak);
+    CHECK(contains(knowledge_of(options, weak.points).missing, "95 % to 100 % (no point in its upper half)"));
+
     // repeats that differ by a third are never enough at once
     RecordSession wild;
     t_s = 0.0;
