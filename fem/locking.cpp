@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,25 +69,25 @@ std::string bending_warning(const FemCase& model) {
     if (planes[0].empty()) return "";
     const auto size_m = [&](std::size_t c) { return planes[c].back() - planes[c].front(); };
     const double longest_m = std::max({size_m(0), size_m(1), size_m(2)});
+    const auto across = [&](std::size_t c) { return static_cast<int>(planes[c].size()) - 1; };
+    std::optional<std::size_t> worst;  // the axis with fewest cells
     for (std::size_t c = 0; c < 3; ++c) {
-        const auto across = static_cast<int>(planes[c].size()) - 1;
         const std::string axis(1, "xyz"[c]);
         const auto holds = [&](const CaseSupport& one) { return one.name == axis + "min" || one.name == axis + "max"; };
-        if (across > kFewAcross || size_m(c) > 0.25 * longest_m) continue;
+        if (across(c) > kFewAcross || size_m(c) > 0.25 * longest_m) continue;
         if (std::any_of(model.supports.begin(), model.supports.end(), holds)) continue;
-        const Element element = model.problem.element;
-        const Bending& bends = element == Element::tet4   ? kTet4Bends
-                               : element == Element::hex8 ? kHex8Bends
-                                                          : kBbarBends;
-        const auto k = static_cast<std::size_t>(across - 1);
-        const std::string on_long_cells =
-            bends.long_cells[k] > 0.0 ? ", " + files::short_number(bends.long_cells[k]) + " on cells twice as long"
-                                      : "";
-        return files::counted(across, "cell") + " across the body along " + axis + ": where it bends, " +
-               name_of(element) + " gives " + files::short_number(bends.cubes[k]) + " of the displacement on cubes" +
-               on_long_cells + " (the bar of docs/fem.md); hex8i bends right";
+        if (!worst || across(c) < across(*worst)) worst = c;
     }
-    return "";
+    if (!worst) return "";
+    const Element element = model.problem.element;
+    const Bending& bends = element == Element::tet4 ? kTet4Bends : element == Element::hex8 ? kHex8Bends : kBbarBends;
+    const auto k = static_cast<std::size_t>(across(*worst) - 1);
+    const std::string on_long_cells =
+        bends.long_cells[k] > 0.0 ? ", " + files::short_number(bends.long_cells[k]) + " on cells twice as long" : "";
+    return files::counted(across(*worst), "cell") + " across the body along " + std::string(1, "xyz"[*worst]) +
+           ": bent that way, the bar of docs/fem.md has with " + name_of(element) + " " +
+           files::short_number(bends.cubes[k]) + " of its displacement on cubes" + on_long_cells +
+           ", and on flat cells more; hex8i bends right";
 }
 
 std::string locking_warning(const Problem& problem) {
