@@ -87,7 +87,8 @@ inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
     {StageForm::calibration_bare, StageId::calibration, false, 0.03, "not known: the profile brings no points"},
     {StageForm::position, StageId::position, false, 0.05, "exact"},
     {StageForm::depth_recorded_map, StageId::depth, false, 0.09,
-     "at most {} mN of noise in the recording (changes of the tissue between its places count too)"},
+     "about {} mN of noise in the map (more where the tissue changes between its places, less where its cells share "
+     "recorded ones)"},
     {StageForm::depth_made_map, StageId::depth, false, 0.09,
      "{} % of the greatest force (95th percentile, from twice the pitch)"},
     {StageForm::depth_linear, StageId::depth, false, 15.0,

@@ -32,7 +32,7 @@ void print_info(const stiffnessmaps::Map& map, const files::Json& info) {
                 info["not_rising_with_depth"].dump().c_str());
     std::printf("  noise       %s; the avatar's laws then smooth by %s mm\n",
                 info["noise_N"].is_null() ? "not known (too few neighbours)"
-                                          : ("at most " + files::short_number(1e3 * info["noise_N"].get<double>()) +
+                                          : ("about " + files::short_number(1e3 * info["noise_N"].get<double>()) +
                                              " mN (changes of the tissue between places count too)")
                                                 .c_str(),
                 files::short_number(info["smoothing_mm"].get<double>()).c_str());

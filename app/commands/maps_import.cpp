@@ -220,11 +220,11 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
                 report.rejected_rows, report.rows, report.rejected_points, report.outliers);
     if (report.form == stiffnessmaps::RecordingForm::probing)
         std::printf("; %.3g N at contact, or in the air before it, subtracted (median)", report.median_offset_N);
-    std::printf("\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %s\n",
-                residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
-                100.0 * residual.worst_share(),
-                map.noise_N ? ("at most " + files::short_number(*map.noise_N) + " N").c_str()
-                            : "not known (too few neighbours)");
+    std::printf(
+        "\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %s\n",
+        residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
+        100.0 * residual.worst_share(),
+        map.noise_N ? ("about " + files::short_number(*map.noise_N) + " N").c_str() : "not known (too few neighbours)");
     if (!report.tangential) return;
     const stiffnessmaps::ImportResidual& tangential = *report.tangential;
     std::printf("  tangential force against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%)\n",

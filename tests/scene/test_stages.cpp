@@ -24,7 +24,8 @@ TEST_CASE("stages: a stage takes cost and error from its row, and the figures fi
     CHECK_FALSE(stage.per_frame);
     CHECK(stage.fidelity == "map m");
     CHECK(stage.error ==
-          "at most 12.5 mN of noise in the recording (changes of the tissue between its places count too)");
+          "about 12.5 mN of noise in the map (more where the tissue changes between its places, less where its cells "
+          "share recorded ones)");
     CHECK(stage.cost_us == figures_of(StageForm::depth_recorded_map).cost_us);
     CHECK(stage_of(StageForm::surface_nodes, "nodes").per_frame);
 }
