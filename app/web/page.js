@@ -75,7 +75,7 @@ const palpaPage = (() => {
 
     // A tablet's keyboard comes only for a field of the page: one stands over the canvas's own, and what is typed goes there.
     const typing = at('typing');
-    const kEnter = 13; // of platform/window_event.h
+    const kKeys = {Enter: 13, Tab: 9}; // of platform/window_event.h
     const kSettled_ms = 300;
     let typed_ms = 0;
     const type = (text, x, y, width, height) => {
@@ -97,8 +97,13 @@ const palpaPage = (() => {
         typed_ms = performance.now();
     });
     typing.addEventListener('keydown', (event) => {
-        if (event.key !== 'Enter') return;
-        for (const down of [1, 0]) _palpa_key(down, kEnter, 0, 0, 0, 0);
+        const code = kKeys[event.key];
+        if (!code) return;
+        if (event.key === 'Tab') {
+            event.preventDefault(); // the program goes on to its next field, and this one with it
+            typed_ms = 0;
+        }
+        for (const down of [1, 0]) _palpa_key(down, code, 0, 0, event.shiftKey ? 1 : 0, 0);
     });
     at('canvas').addEventListener('pointerup', () => { if (!typing.hidden) typing.focus(); });
 

@@ -353,6 +353,30 @@ test('texts with the letters and quotation marks of European languages are shown
     japan: {...tiny, instructions: '\u3042'},
 }}));
 
+test('with a touch screen, Tab goes on to the next question, and each answer stays under its own', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await open(browser, desk.url, '?protocol=asks&participant=5');
+    await at(page, 'questions');
+    await tap(browser, 200, 178);
+    for (const [i, answer] of ['nurse', 'chess', '3', '45'].entries()) {
+        if (i > 0) await page.keyboard.press('Tab');
+        await frames(page, 12);
+        await page.keyboard.type(answer, {delay: 60});
+        await frames(page, 12);
+    }
+    for (let i = 0; i < 2; ++i) await key(page, 'Enter'); // the first ends the typing
+    await at(page, 'instructions');
+    const answers = await page.evaluate(() => {
+        const files = (folder) => FS.readdir(folder).filter((name) => !name.startsWith('.')).flatMap((name) =>
+            FS.isDir(FS.stat(`${folder}/${name}`).mode) ? files(`${folder}/${name}`) : [`${folder}/${name}`]);
+        return FS.readFile(files('/studies').find((file) => file.endsWith('ratings_beh.tsv')), {encoding: 'utf8'});
+    });
+    for (const row of ['prof\tnurse', 'hobby\tchess', 'years\t3', 'old\t45']) assert.ok(answers.includes(`n/a\t${row}\n`), answers);
+}, {protocols: {asks: {...tiny, demographics: [
+    {id: 'prof', text: 'Your profession'}, {id: 'hobby', text: 'Your hobby'},
+    {id: 'years', text: 'Years of experience', from: 0, to: 60}, {id: 'old', text: 'Age', from: 0, to: 99},
+]}}}));
+
 test('a browser that stores nothing is refused a study, in words', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;
     await page.addInitScript(() => { IDBFactory.prototype.open = () => { throw new Error('refused'); }; });
