@@ -164,7 +164,7 @@ void stard_methods(const Report& report, const Protocol* protocol, StardForm& fo
     form.item("8", "where and when (places, dates)",
               known_or_open(protocol,
                             "dates are in ..._performance.json of each trial on the screen, but of trials by hand and "
-                            "of choices there are none; places: " +
+                            "of choices without a scene there are none; places: " +
                                 kToFillIn));
     form.item("9", "consecutive, random or convenience series");
     form.item("10a", "index test, so that it can be repeated", index_tests(report, protocol));

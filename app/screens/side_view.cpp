@@ -17,13 +17,16 @@ namespace {
 constexpr float kWide_mm = 52.0f;  // on the screen
 constexpr float kHigh_mm = 29.0f;
 constexpr float kLeastWide_mm = 36.0f;
-constexpr double kSection_m = 44e-3;   // of the tissue, along the screen's x
+constexpr double kSection_m =
+    44e-3;  // of the tissue, along the screen's x; more where the contact is deeper than it shows
+constexpr double kBelow_m = 3e-3;      // of the tissue under the deepest point
 constexpr double kAbove_m = 10e-3;     // the undisturbed surface is this far below the upper edge
 constexpr double kDimension_m = 8e-3;  // the line that measures the depth is this far from the contact
 
 struct Section {
     ImVec2 corner;  // upper left
     ImVec2 size_px;
+    double span_m = kSection_m;
     float px_per_m = 1.0f;
     ImVec2 at(double along_m, double up_m) const {
         return {corner.x + 0.5f * size_px.x + px_per_m * static_cast<float>(along_m),
@@ -33,7 +36,7 @@ struct Section {
 
 // The lower right corner, as large as fits beside or below the tissue. Where little room is left there, it covers the
 // tissue's lower right corner, or the lower left one while the contact is near that.
-Section place_section(const Shown& shown, float mm) {
+Section place_section(const Shown& shown, double depth_m, float mm) {
     const scene::ScreenArea& area = shown.state.screen;
     const float gap_px = 2.0f * mm;
     const auto right = static_cast<float>(area.x_px + area.width_px);
@@ -45,7 +48,8 @@ Section place_section(const Shown& shown, float mm) {
     const float wide_px = std::clamp(room_px, kLeastWide_mm * mm, kWide_mm * mm);
     Section section;
     section.size_px = ImVec2(wide_px, wide_px * kHigh_mm / kWide_mm);
-    section.px_per_m = wide_px / static_cast<float>(kSection_m);
+    section.span_m = std::max(kSection_m, (kAbove_m + depth_m + kBelow_m) * static_cast<double>(kWide_mm / kHigh_mm));
+    section.px_per_m = wide_px / static_cast<float>(section.span_m);
     section.corner = ImVec2(right - wide_px - gap_px, bottom - section.size_px.y - gap_px);
     if (room_px >= wide_px) return section;
     const ImVec2 contact = on_screen(shown.view, shown.avatar.p_m.x(), shown.avatar.p_m.y());
@@ -58,16 +62,18 @@ Section place_section(const Shown& shown, float mm) {
 constexpr int kSectionColumns = 72;
 using Heights = std::array<double, kSectionColumns + 1>;  // of the surface, downwards
 
-double along_of(int i) { return kSection_m * (static_cast<double>(i) / kSectionColumns - 0.5); }
+double along_of(const Section& section, int i) {
+    return section.span_m * (static_cast<double>(i) / kSectionColumns - 0.5);
+}
 
-Heights sinks_of(const Shown& shown) {
+Heights sinks_of(const Shown& shown, const Section& section) {
     // the surface lies around the pen, and is drawn around the avatar
     const Eigen::Vector2d along = shown.state.view.axes.transpose() * Eigen::Vector2d(1.0, 0.0);
     Heights sink_m{};
     if (!shown.state.touch.down) return sink_m;
     for (int i = 0; i <= kSectionColumns; ++i)
         sink_m[static_cast<std::size_t>(i)] =
-            scene::sink_at_m(shown.shape, shown.state.touch.p_m + along_of(i) * along);
+            scene::sink_at_m(shown.shape, shown.state.touch.p_m + along_of(section, i) * along);
     return sink_m;
 }
 
@@ -80,13 +86,14 @@ void draw_tissue(const Section& section, const Heights& sink_m, scene::SurfaceMa
     const ImDrawListFlags flags = draw.Flags;
     draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
     for (std::size_t i = 0; i < kSectionColumns; ++i) {
-        const ImVec2 left = section.at(along_of(static_cast<int>(i)), -sink_m[i]);
-        const ImVec2 right = section.at(along_of(static_cast<int>(i) + 1), -sink_m[i + 1]);
+        const ImVec2 left = section.at(along_of(section, static_cast<int>(i)), -sink_m[i]);
+        const ImVec2 right = section.at(along_of(section, static_cast<int>(i) + 1), -sink_m[i + 1]);
         draw.AddQuadFilled(left, right, ImVec2(right.x, floor), ImVec2(left.x, floor), flesh);
     }
     draw.Flags = flags;
     std::array<ImVec2, kSectionColumns + 1> line;
-    for (std::size_t i = 0; i <= kSectionColumns; ++i) line[i] = section.at(along_of(static_cast<int>(i)), -sink_m[i]);
+    for (std::size_t i = 0; i <= kSectionColumns; ++i)
+        line[i] = section.at(along_of(section, static_cast<int>(i)), -sink_m[i]);
     draw.AddPolyline(line.data(), kSectionColumns + 1, top, 0, 0.7f * mm);
 }
 
@@ -108,8 +115,8 @@ void draw_tip(const Shown& shown, const Section& section, double depth_m, ImDraw
 
 // A line at the height of the undisturbed surface, and the depth below it.
 void draw_depth(const Shown& shown, const Section& section, double depth_m, float mm, ImDrawList& draw) {
-    const ImVec2 rest = section.at(-0.5 * kSection_m, 0.0);
-    const ImVec2 end = section.at(0.5 * kSection_m, 0.0);
+    const ImVec2 rest = section.at(-0.5 * section.span_m, 0.0);
+    const ImVec2 end = section.at(0.5 * section.span_m, 0.0);
     for (float x = rest.x; x < end.x; x += 2.0f * mm)
         draw.AddLine(ImVec2(x, rest.y), ImVec2(std::min(x + mm, end.x), rest.y), kInk, 0.2f * mm);
     const StudyRun* study = study_of(shown.doing);
@@ -131,13 +138,13 @@ void draw_side_view(const Shown& shown, const Gui& gui) {
     const bool wanted = shown.settings.side_view || study_of(shown.doing) != nullptr;
     if (!shown.scene.surface || !shown.scene.cues.side_view || !wanted) return;
     const float mm = gui.mm();
-    const Section section = place_section(shown, mm);
+    const double depth_m = shown.state.touch.down ? shown.state.contact.depth_m : 0.0;
+    const Section section = place_section(shown, depth_m, mm);
     if (section.size_px.x > 0.5f * static_cast<float>(shown.state.screen.width_px)) return;  // too small a window
     const ImVec2 end(section.corner.x + section.size_px.x, section.corner.y + section.size_px.y);
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
-    const double depth_m = shown.state.touch.down ? shown.state.contact.depth_m : 0.0;
     draw.AddRectFilled(section.corner, end, IM_COL32(28, 31, 34, 255));
-    draw_tissue(section, sinks_of(shown), shown.scene.surface->material, mm, draw);
+    draw_tissue(section, sinks_of(shown, section), shown.scene.surface->material, mm, draw);
     draw_tip(shown, section, depth_m, draw);
     draw_depth(shown, section, depth_m, mm, draw);
     plated_text(draw, ImVec2(section.corner.x + mm, end.y - ImGui::GetFontSize() - 0.6f * mm), kInk, words::kSideView);
