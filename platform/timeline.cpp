@@ -24,7 +24,8 @@ double time_of(const Sample& sample, Timeline& timeline) {
         timeline.offset_s += std::clamp(off_s, -kFall * passed_s, kDrift * passed_s);
     }
     timeline.device_s = sample.t_device_s;
-    return sample.t_device_s + timeline.offset_s;
+    // events that queued up behind a stall arrive at one moment, and none of them is from after it
+    return std::min(sample.t_device_s + timeline.offset_s, sample.t_host_s + kLate_s);
 }
 
 }  // namespace

@@ -85,3 +85,20 @@ TEST_CASE("hard case 11: a device clock that runs at another rate, is set, or ji
     CHECK_FALSE(move_to(at(60.002, 9998.8), timeline));
     CHECK(timeline.backwards == 1);
 }
+
+TEST_CASE("timeline: events that queued up behind a stall put no time into the future, and a held press goes on") {
+    Timeline timeline;
+    const auto at = [&](double host_s, double device_s) {
+        Sample sample;
+        sample.t_host_s = host_s;
+        sample.t_device_s = device_s;
+        return move_to(sample, timeline);
+    };
+    for (int k = 0; k < 10; ++k) CHECK(at(10.0 + 0.01 * k, 0.01 * k));
+    for (int k = 0; k < 10; ++k) CHECK(at(13.0, 0.2 + 0.1 * k));  // moves of a second, after a stall of three
+    CHECK(timeline.now_s <= 13.1 + 1e-9);
+    Sample held;  // stamped by the host alone
+    held.t_host_s = 13.01;
+    CHECK(move_to(held, timeline));
+    CHECK(timeline.backwards == 0);
+}
