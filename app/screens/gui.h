@@ -32,7 +32,8 @@ class Gui {
     void set_scale(float px_per_mm, float text = 1.0f);
     float mm() const { return mm_; }            // px per millimetre of controls
     float hand_mm() const { return hand_mm_; }  // px per millimetre of what hands do, whatever the size of text
-    // Has the letters of `texts` too (UTF-8) and all of their alphabet, Greek or Cyrillic, beside Latin ones; takes effect as set_scale() does.
+    // Has the letters of `texts` too (UTF-8) and all of their alphabet, Greek or Cyrillic, beside Latin ones; takes effect
+    // as set_scale() does.
     void add_letters(const std::string& texts);
     WindowSize size_px() const;  // of the frame
 

@@ -17,8 +17,7 @@ namespace {
 constexpr float kWide_mm = 52.0f;  // on the screen
 constexpr float kHigh_mm = 29.0f;
 constexpr float kLeastWide_mm = 36.0f;
-constexpr double kSection_m =
-    44e-3;  // of the tissue, along the screen's x; more where the contact is deeper than it shows
+constexpr double kSection_m = 44e-3;   // of the tissue, along the screen's x; more where the contact is deep
 constexpr double kBelow_m = 3e-3;      // of the tissue under the deepest point
 constexpr double kAbove_m = 10e-3;     // the undisturbed surface is this far below the upper edge
 constexpr double kDimension_m = 8e-3;  // the line that measures the depth is this far from the contact

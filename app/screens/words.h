@@ -631,8 +631,7 @@ inline constexpr const char* kTrialWaits =
 inline constexpr const char* kNothingTouched = "The time is over";
 inline constexpr const char* kTimeOverUnseen =
     "It was over while this app was out of sight, so the trial does not count and is repeated. Choose Start when you "
-    "are "
-    "ready.";
+    "are ready.";
 inline constexpr const char* kTimeOverUntouched =
     "Nothing was touched, so nothing is counted, and this part is repeated. Choose Start when you are ready.";
 inline constexpr const char* kTrialInterrupted =

@@ -142,6 +142,7 @@ TEST_CASE("command line: maps info, sample, generate and import") {
     const Json at =
         parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --depth-mm 7 --json").out, "stdout");
     CHECK(at["force_N"].get<double>() == close_to(2.98).epsilon(0.01));
+    for (const char* along : {"resists_x_N", "resists_y_N"}) CHECK(at[along].get<double>() >= 0.0);
     const std::string force = number_text(at["force_N"].get<double>());
     const Json back = parse_json(
         palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --force-N " + force + " --json").out, "stdout");
