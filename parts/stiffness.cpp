@@ -74,6 +74,37 @@ void judge_stretch(const Part& part, const PartLoad& load, const CellModel& mode
                   " times its height deep: it stretches, which small displacements leave out";
 }
 
+// The displacement for 1 N on other cells, m; absent where these cannot answer.
+std::optional<double> compliance_on(const Part& part, const PartLoad& load, int voxels_per_cell) {
+    try {
+        const CellModel model = cell_model(part, voxels_per_cell);
+        const VoxelSolution solution = solve(make_multigrid(model.level), unit_load_N(part, model, load), {1e-3, 500});
+        if (!solution.converged || !(solution.work_J > 0.0)) return std::nullopt;
+        return solution.work_J;
+    } catch (const files::InputError&) {
+        return std::nullopt;  // a support between their corners
+    } catch (const MeshError&) {
+        return std::nullopt;  // too many
+    }
+}
+
+// Cells as small as voxels are taken as they are.
+void judge_cells(const Part& part, const PartLoad& load, int voxels_per_cell, MethodResult& out) {
+    if (!out.answered) return;
+    const auto against = [&](int n) -> std::optional<double> {
+        const std::optional<double> other = compliance_on(part, load, n);
+        if (!other) return std::nullopt;
+        return *other * load.force_N / out.displacement_m - 1.0;
+    };
+    out.coarser = against(2 * voxels_per_cell);
+    if (voxels_per_cell == 1 || !out.why_not.empty()) return;
+    if (out.coarser && std::abs(*out.coarser) <= kMostByCells) return;
+    const std::optional<double> finer = against((voxels_per_cell + 1) / 2);
+    if (!finer || std::abs(*finer) <= kMostApart) return;
+    out.why_not = "on cells half as large the displacement is " + files::short_number(100.0 * std::abs(*finer)) +
+                  " % " + (*finer > 0.0 ? "greater" : "less") + ": smaller cells are needed";
+}
+
 void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N, double energy_error,
                  MethodResult& out) {
     Eigen::Matrix3Xd u_m;
@@ -261,6 +292,7 @@ std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, c
                 }
                 solve_cells(load, *model, load_N, options.energy_error, result);
                 judge_stretch(part, load, *model, load_N, result);
+                judge_cells(part, load, voxels_per_cell(part, options.cell_m), result);
             }
         } catch (const MeshError& error) {
             throw files::InputError(part.file + ": " + error.what());

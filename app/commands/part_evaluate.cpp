@@ -62,6 +62,8 @@ files::Json json_of(const parts::MethodResult& result) {
     const bool cells = result.answered && result.method >= Method::voxels;
     const bool iterates = cells && result.method == Method::voxels;
     json["cells"] = cells ? files::Json(result.cells) : files::Json(nullptr);
+    json["on_cells_twice_as_large_percent"] =
+        result.coarser ? files::number_or_null(100.0 * *result.coarser) : files::Json(nullptr);
     json["max_strain"] = or_null(cells, result.max_strain);
     json["iterations"] = iterates ? files::Json(result.iterations) : files::Json(nullptr);
     json["energy_error_percent"] = or_null(iterates, 100.0 * result.energy_error);
@@ -83,6 +85,7 @@ void print_row(const parts::MethodResult& result) {
         std::printf("  %lld cells, %d iterations, energy error %s %%", static_cast<long long>(result.cells),
                     result.iterations, files::short_number(100.0 * result.energy_error).c_str());
     }
+    if (result.coarser) std::printf(", on cells twice as large %+.2g %%", 100.0 * *result.coarser);
     std::printf("  %s s%s%s\n", files::short_number(result.time_s).c_str(),
                 result.why_not.empty() ? "" : "; does not apply: ", files::printable(result.why_not).c_str());
 }

@@ -94,6 +94,24 @@ TEST_CASE("part stiffness: each method says when it does not apply") {
     CHECK(test::contains(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].why_not, "along the axis"));
 }
 
+TEST_CASE("part stiffness: cells too large for the toothbrush do not apply, and refuse no beam that is right") {
+    const Part brush = read_part(PALPA_SOURCE_DIR "/assets/parts/toothbrush-a.json");
+    for (const double cell_mm : {0.8, 2.0, 3.0, 4.0}) {
+        CAPTURE(cell_mm);
+        const auto results =
+            stiffness_of(brush, brush.loads[0], {{Method::euler_bernoulli, Method::voxels}, 1e-3 * cell_mm, 1e-3});
+        const bool right = std::abs(results[1].displacement_m / 1.66e-3 - 1.0) < 0.02;
+        CHECK(right == (cell_mm < 2.5));
+        CHECK(results[0].why_not.empty());
+        CHECK(results[1].why_not.empty() == right);
+        REQUIRE(results[1].coarser);
+        CHECK((std::abs(*results[1].coarser) < kMostByCells) == (cell_mm < 1.0));
+        if (right) continue;
+        CHECK(contains(results[1].why_not, "on cells half as large the displacement is"));
+        CHECK_FALSE(results[0].error);  // what does not apply is no reference
+    }
+}
+
 TEST_CASE("part stiffness: a beam doubts a load that is oblique across its section, and one that is spread along it") {
     Json json = small_part();
     json["size_mm"] = {20, 2, 2};
