@@ -224,9 +224,12 @@ KeptTrial read_kept_trial(const fs::path& file) {
     return t;
 }
 
-std::vector<fs::path> history_files(const fs::path& folder) {
+std::vector<fs::path> history_files(const fs::path& folder, std::vector<std::string>& problems) {
     std::vector<fs::path> files;
     std::error_code error;
+    const fs::directory_iterator readable(folder, error);
+    if (error && error != std::errc::no_such_file_or_directory)
+        problems.push_back(folder.string() + ": the folder of results cannot be read: " + error.message());
     for (const fs::path& entry : files::listed_entries(folder)) {
         if (is_kept_trial(entry) && !fs::is_directory(entry, error)) files.push_back(entry);
     }

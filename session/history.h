@@ -70,8 +70,10 @@ std::filesystem::path keep_trial(const KeptTrial& trial, const std::filesystem::
 // Throws InputError that names file, key, what was found and what was expected.
 KeptTrial read_kept_trial(const std::filesystem::path& file);
 
-// Returns the files of kept trials in the folder, and nothing else that is there; of no folder, none.
-std::vector<std::filesystem::path> history_files(const std::filesystem::path& folder);
+// Returns the files of kept trials in the folder, and nothing else that is there; of no folder, none. If it cannot be read,
+// `problems` says why.
+std::vector<std::filesystem::path> history_files(const std::filesystem::path& folder,
+                                                 std::vector<std::string>& problems);
 
 // Reads the trials, oldest first. A file that cannot be read is left out, and `problems` says why.
 std::vector<KeptTrial> read_history(const std::vector<std::filesystem::path>& files,

@@ -13,6 +13,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/option_checks.h"
+#include "app/commands/press_rows.h"
 #include "app/scene_choices.h"
 #include "devices/press_file.h"
 #include "files/cache.h"
@@ -120,22 +121,6 @@ void take_schedule(const TactileOptions& options, scene::Scene& scene) {
     scene.tactile->display->schedule = schedule_of(options.schedule);
 }
 
-// Where there is no tissue, nothing pushes back.
-void warn_outside(const std::vector<devices::PressRow>& press, const scene::TissueArea& area, const std::string& file) {
-    const auto outside = [&](const devices::PressRow& row) {
-        const Eigen::Vector2d off_m = (Eigen::Vector2d(row.x_m, row.y_m) - area.centre_m).cwiseAbs();
-        return (off_m.array() > 0.5 * area.size_m.array()).any();
-    };
-    const auto count = std::count_if(press.begin(), press.end(), outside);
-    if (count == 0) return;
-    const Eigen::Vector2d low_mm = 1e3 * (area.centre_m - 0.5 * area.size_m);
-    const Eigen::Vector2d high_mm = 1e3 * (area.centre_m + 0.5 * area.size_m);
-    std::fprintf(stderr, "palpa: warning: %s: %td of %zu rows are beside the tissue (x %s to %s, y %s to %s mm)\n",
-                 file.c_str(), count, press.size(), files::short_number(low_mm.x()).c_str(),
-                 files::short_number(high_mm.x()).c_str(), files::short_number(low_mm.y()).c_str(),
-                 files::short_number(high_mm.y()).c_str());
-}
-
 session::TactileResult run_as_asked(const TactileOptions& options, const scene::TissueArea& area,
                                     const std::shared_ptr<tactile::TactilePlan>& plan, files::Json& devices) {
     session::TactileRunOptions run;
@@ -144,7 +129,8 @@ session::TactileResult run_as_asked(const TactileOptions& options, const scene::
     const bool rows = holds_rows(options.replay);
     if (!rows) {
         run.press = devices::read_press(options.replay);
-        warn_outside(run.press, area, options.replay);
+        const std::string beside = rows_beside(run.press, area);
+        if (!beside.empty()) std::fprintf(stderr, "palpa: warning: %s: %s\n", options.replay.c_str(), beside.c_str());
     }
     std::vector<session::DeviceRow> recorded;
     if (rows) recorded = session::read_device_rows(options.replay, session::field_names<tactile::LoopFeedback>());
@@ -179,6 +165,8 @@ void print_tactile(const files::Json& result) {
         std::printf("  pins off the wanted shape by %.3g mm (rms), %.3g mm at most, by %s\n",
                     result["mismatch_mm"]["rms"].get<double>(), result["mismatch_mm"]["max"].get<double>(),
                     result["reached_by"].get<std::string>().c_str());
+    if (const auto beyond = result["over_edge_steps"].get<std::int64_t>(); beyond > 0)
+        std::printf("  the finger reached over the edge of the tissue in %s\n", files::counted(beyond, "step").c_str());
     std::printf("  linear range: %s\n", result["linear_range"].get<std::string>().c_str());
     for (const auto& fault : result["faults"])
         std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),

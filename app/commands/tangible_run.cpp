@@ -15,6 +15,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/interrupt.h"
 #include "app/commands/option_checks.h"
+#include "app/commands/press_rows.h"
 #include "app/commands/tangible_loop.h"
 #include "app/scene_choices.h"
 #include "devices/press_file.h"
@@ -232,6 +233,13 @@ void note_beyond(double deepest_m, const tangible::TangiblePlan& plan, files::Js
     std::fprintf(stderr, "palpa: warning: %s\n", note.c_str());
 }
 
+// A device whose place is not fixed renders what the tissue answers under the press.
+void note_beside(const std::string& file, const std::string& beside, files::Json& json) {
+    if (beside.empty()) return;
+    json["notes"].push_back(beside);
+    std::fprintf(stderr, "palpa: warning: %s: %s\n", file.c_str(), beside.c_str());
+}
+
 void note_less_depth(const session::Finger& finger, files::Json& json) {
     const double usual_m = tangible::PressMotion{}.depth_m;
     if (finger.motion.depth_m >= usual_m) return;
@@ -270,6 +278,7 @@ void run_tangible(TangibleRunArguments arguments) {
         check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
         if (row.depth_m > deepest_m) deepest_m = row.depth_m;  // NaN: a press by force
     }
+    const std::string beside = plan->place_follows ? rows_beside(press, scene_plan.area) : "";
     const bool by_force = !press.empty() && std::isfinite(press.front().force_N);
     const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
     files::Json json{{"scene", scene.name}, {"seed", nullptr}, {"plant", nullptr}};
@@ -290,6 +299,7 @@ void run_tangible(TangibleRunArguments arguments) {
     }
     if (real) name_limits(result.guarded, json);
     note_beyond(deepest_m, *plan, json);
+    note_beside(arguments.press, beside, json);
     note_idle_hand(plant_name, by_force, json);
     if (result.guard != devices::Fault::none) name_guard(std::string(text(result.guard)), json);
     if (result.cut) {

@@ -46,11 +46,12 @@ void trial_list(const Gui& gui, HistoryView& history) {
         ImGui::PopStyleVar(2);
         ImGui::PopID();
     }
-    if (history.trials.empty()) paragraph(words::kNoHistory);
+    if (history.trials.empty() && history.problems.empty()) paragraph(words::kNoHistory);
 }
 
 void ask_to_delete(const Gui& gui, HistoryView& history, Wishes& wishes) {
-    const std::string read = std::to_string(history.trials.size()), unread = std::to_string(history.problems.size());
+    const std::string read = std::to_string(history.trials.size()),
+                      unread = std::to_string(history.files.size() - history.trials.size());
     warning_paragraph(history.problems.empty() ? words::filled(words::kDeleteAsk, {read})
                                                : words::filled(words::kDeleteAskUnread, {read, unread}));
     const float width_px = share_of_line_px(2);
@@ -205,7 +206,7 @@ std::string found_text(const KeptTrial& trial) {
 std::shared_ptr<HistoryView> make_history_view(const std::filesystem::path& folder) {
     auto history = std::make_shared<HistoryView>();
     history->folder = folder;
-    if (!folder.empty()) history->files = session::history_files(folder);
+    if (!folder.empty()) history->files = session::history_files(folder, history->problems);
     history->trials = session::read_history(history->files, history->problems);
     if (!history->trials.empty()) choose_trial(history->trials.size() - 1, *history);
     return history;

@@ -377,7 +377,7 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     report.rejected_points = before - probing.points.size();
     if (probing.points.empty())
         throw files::bad_input(file, "", "no point with two depths in contact",
-                               "forces that rise with depth (is the sign the other way round? --negate-force)");
+                               "forces that rise with depth (is the sign the other way round? with --negate-force, or without)");
 
     const GridChoice grid = choose_grid(probing, options, file);
     note_grid(grid.plan, grid.on_grid, options, source);

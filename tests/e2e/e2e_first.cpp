@@ -112,7 +112,8 @@ void try_for_the_first_time(const std::string& tool) {
     CHECK(result["trials"][2]["clock_s"] < result["trials"][2]["duration_s"]);
     // the guided start is no result; the others were kept without being asked
     std::vector<std::string> problems;
-    const std::vector<KeptTrial> kept = read_history(history_files(folder / ".local/share/palpa/history"), problems);
+    const std::vector<KeptTrial> kept =
+        read_history(history_files(folder / ".local/share/palpa/history", problems), problems);
     CHECK(problems.empty());
     REQUIRE(kept.size() == 2);
     CHECK(kept[0].mode == TrialMode::practice);

@@ -152,7 +152,7 @@ TEST_CASE("history: trials of one second do not overwrite each other, and only t
     write_text_whole(folder / "broken.trial.json", R"({"palpa_trial": 1, "utc": "x", "scene": 3})");
     std::vector<std::string> problems;
     std::filesystem::create_directory(folder / "own.trial.json");
-    const std::vector<std::filesystem::path> files = history_files(folder.path());
+    const std::vector<std::filesystem::path> files = history_files(folder.path(), problems);
     const std::vector<KeptTrial> all = read_history(files, problems);
     REQUIRE(all.size() == 3);
     CHECK(all[0].utc == "2025-01-01T00:00:00Z");
@@ -165,8 +165,11 @@ TEST_CASE("history: trials of one second do not overwrite each other, and only t
     delete_history(files);
     CHECK(std::filesystem::exists(folder / "notes.txt"));
     CHECK(std::filesystem::exists(folder / "own.trial.json"));
-    CHECK(history_files(folder.path()) == std::vector{later});
-    CHECK(history_files(folder / "none").empty());
+    CHECK(history_files(folder.path(), problems) == std::vector{later});
+    CHECK(history_files(folder / "none", problems).empty());
+    CHECK(problems.size() == 1);
+    CHECK(history_files(folder / "notes.txt", problems).empty());  // a file where the folder should be
+    CHECK(contains(problems.back(), "notes.txt: the folder of results cannot be read: Not a directory"));
 }
 
 TEST_CASE("history: a trial of an earlier version, without lengths of its nodules, can be read") {

@@ -205,7 +205,7 @@ TEST_CASE("live: results are kept unless the person does not want it, none of th
     desk.app.history_folder = folder / "history";
     const auto kept = [&] {
         std::vector<std::string> problems;
-        const std::size_t count = read_history(history_files(desk.app.history_folder), problems).size();
+        const std::size_t count = read_history(history_files(desk.app.history_folder, problems), problems).size();
         CHECK(problems.empty());
         return count;
     };
