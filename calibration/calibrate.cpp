@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "files/input_error.h"
@@ -108,6 +109,20 @@ Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, Lev
                            "points that determine it (more levels, or another model)");
 }
 
+// A press that holds a reading or two is no repeat of the others: what differs between such presses is the level. Forgets
+// repeats if half of them span less than a quarter of the levels.
+void forget_short_repeats(CalibrationRows& rows) {
+    std::map<int, std::pair<double, double>> ends;  // lowest and highest level of each repeat
+    for (std::size_t i = 0; i < rows.repeat.size(); ++i) {
+        const auto [it, first] = ends.try_emplace(rows.repeat[i], rows.level[i], rows.level[i]);
+        it->second = {std::min(it->second.first, rows.level[i]), std::max(it->second.second, rows.level[i])};
+    }
+    std::vector<double> spans;
+    for (const auto& [repeat, end] : ends) spans.push_back(end.second - end.first);
+    const auto [lowest, highest] = std::minmax_element(rows.level.begin(), rows.level.end());
+    if (spans.size() > 1 && files::median(spans) < 0.25 * (*highest - *lowest)) rows.repeat.clear();
+}
+
 }  // namespace
 
 void check_level(LevelField level, const LevelRange& range, const std::string& file) {
@@ -128,6 +143,7 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
     if (out.n_points == 0) throw files::bad_input(measured.file, "", "no point", "points of a pen and a force sensor");
     const LevelRange range = options.range.value_or(level_range_of(measured.level));
     CalibrationRows rows = measured;
+    forget_short_repeats(rows);
     if (options.remove_lag && !rows.time_s.empty()) {
         out.lag_s = lag_s(rows, range);
         if (out.lag_s) rows = without_lag(rows, *out.lag_s);

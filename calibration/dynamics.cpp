@@ -70,6 +70,21 @@ std::vector<double> smoothed_N(const CalibrationRows& rows, const std::vector<Ru
     return out;
 }
 
+// Returns the runs without their falls, or rises, by more than half of the range from one sample to the next: points that
+// were captured one by one, each time upwards, fall so between two repeats, and nobody recorded a release.
+std::vector<Run> without_jumps(const CalibrationRows& rows, const std::vector<Run>& runs, double range_N) {
+    std::vector<Run> out;
+    for (const Run& run : runs) {
+        std::size_t from = run.from;
+        for (std::size_t i = run.from + 1; i <= run.to; ++i) {
+            if (i < run.to && std::abs(rows.force_N[i] - rows.force_N[i - 1]) <= 0.5 * range_N) continue;
+            if (i - from >= 2) out.push_back({from, i});
+            from = i;
+        }
+    }
+    return out;
+}
+
 // Returns +1 for pressing, -1 for releasing, 0 for neither: whether the force rises or falls by 0.5 % of its range, and more
 // than its noise, from `reach` samples before to `reach` samples after.
 std::vector<int> directions(const CalibrationRows& rows) {
@@ -81,7 +96,7 @@ std::vector<int> directions(const CalibrationRows& rows) {
     if (rows.time_s.empty()) return direction;
     const auto [lowest, highest] = std::minmax_element(rows.force_N.begin(), rows.force_N.end());
     const double enough_N = std::max(0.005 * (*highest - *lowest), 2.0 * noise_N(rows.force_N));
-    const std::vector<Run> runs = runs_of(rows, median_step_s(rows));
+    const std::vector<Run> runs = without_jumps(rows, runs_of(rows, median_step_s(rows)), *highest - *lowest);
     const std::vector<double> force_N = smoothed_N(rows, runs);
     for (const Run& run : runs) {
         const std::size_t reach = std::clamp<std::size_t>((run.to - run.from) / 60, 2, 50);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -95,6 +94,23 @@ int index_of(std::map<std::string, int>& names, std::string name) {
     return names.emplace(std::move(name), static_cast<int>(names.size())).first->second;
 }
 
+// Numbers the repeats in the order of their numbers where all are numbers, else as they first come.
+std::vector<int> numbered(const std::vector<std::string>& repeats) {
+    std::map<std::string, int> names;
+    std::map<double, int> numbers;
+    std::vector<int> out;
+    std::vector<double> number(repeats.size());
+    for (std::size_t i = 0; i < repeats.size(); ++i) {
+        out.push_back(index_of(names, repeats[i]));
+        if (files::parse_number(repeats[i], number[i]) && std::isfinite(number[i])) numbers.emplace(number[i], 0);
+    }
+    if (numbers.size() != names.size()) return out;
+    int next = 0;
+    for (auto& [value, index] : numbers) index = next++;
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = numbers.at(number[i]);
+    return out;
+}
+
 }  // namespace
 
 CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions& options) {
@@ -103,7 +119,7 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
     CalibrationRows rows;
     rows.file = file.string();
     if (!columns.force_N) rows.force_column = "force_gf";
-    std::map<std::string, int> repeats;
+    std::vector<std::string> repeats;
     std::map<std::string, int> sessions;
     std::vector<int> session;
     while (table.next()) {
@@ -117,7 +133,7 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
         rows.force_N.push_back(force_of(table, columns));
         rows.line.push_back(table.line());
         if (columns.time_s) rows.time_s.push_back(table.finite_number(*columns.time_s));
-        if (columns.repeat) rows.repeat.push_back(index_of(repeats, std::string(table.field(*columns.repeat))));
+        if (columns.repeat) repeats.emplace_back(table.field(*columns.repeat));
         if (columns.phase) rows.phase.push_back(phase_of(table, *columns.phase));
         std::string name;
         for (const std::size_t column : columns.session) name += std::string(table.field(column)) + "|";
@@ -128,6 +144,7 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
         agree(table, columns.os, rows.device.os);
         agree(table, columns.date, rows.device.date);
     }
+    rows.repeat = numbered(repeats);
     if (rows.level.empty() && !options.where.empty()) {
         std::string asked;
         for (const RowFilter& filter : options.where)

@@ -26,12 +26,24 @@ void note_pressure(const platform::Sample& sample, ToolCheck& tool) {
 
 void fit(const platform::Sample& sample, ClockFit& clock) {
     if (std::isnan(sample.t_device_s)) return;
-    if (clock.count == 0) {
+    if (std::isnan(clock.shortest_ahead_s)) {
         clock.first_host_s = sample.t_host_s;
         clock.first_device_s = sample.t_device_s;
+        clock.shortest_host_s = 0.0;
+        clock.shortest_ahead_s = 0.0;
     }
-    const double host_s = sample.t_host_s - clock.first_host_s;
-    const double ahead_s = (sample.t_device_s - clock.first_device_s) - host_s;
+    const double since_s = sample.t_host_s - clock.first_host_s;
+    const double since_ahead_s = (sample.t_device_s - clock.first_device_s) - since_s;
+    constexpr double kQuarters_per_s = 4.0;
+    const auto quarter = static_cast<std::int64_t>(kQuarters_per_s * since_s);
+    const bool shorter = since_ahead_s > clock.shortest_ahead_s;
+    const double host_s = clock.shortest_host_s, ahead_s = clock.shortest_ahead_s;
+    if (shorter || quarter != clock.quarter) {
+        clock.shortest_host_s = since_s;
+        clock.shortest_ahead_s = since_ahead_s;
+    }
+    if (quarter == clock.quarter) return;
+    clock.quarter = quarter;
     const double n = static_cast<double>(++clock.count);
     const double host_off_s = host_s - clock.mean_host_s;
     const double ahead_off_s = ahead_s - clock.mean_ahead_s;
@@ -148,9 +160,9 @@ std::int64_t distinct_pressures(const ToolCheck& tool) { return static_cast<std:
 ClockDrift clock_drift(const ToolCheck& tool) {
     const ClockFit& clock = tool.clock;
     const double n = static_cast<double>(clock.count);
-    // n samples evenly over T have a variance of T^2 / 12; over 1 s, a delay that changes by 1 ms would look like 1000
+    // n quarters of a second evenly over T have a variance of T^2 / 12; over 1 s, a delay that changes by 1 ms would look like 1000
     // ppm
-    if (clock.count < 30 || clock.sum_host_host < n * kShortestClock_s * kShortestClock_s / 12.0) return {};
+    if (clock.count < 16 || clock.sum_host_host < n * kShortestClock_s * kShortestClock_s / 12.0) return {};
     const double slope = clock.sum_host_ahead / clock.sum_host_host;
     const double left = std::max(0.0, clock.sum_ahead_ahead - slope * clock.sum_host_ahead);
     return {1e6 * slope, 1e6 * std::sqrt(left / ((n - 2.0) * clock.sum_host_host))};

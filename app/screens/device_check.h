@@ -13,9 +13,13 @@
 
 namespace palpa::app {
 
-// A straight line through (device - host) over host time, by least squares with running sums.
+// A straight line through (device - host) over host time, by least squares with running sums, of the sample with the
+// shortest delay in each quarter of a second: a busy computer makes delays longer, many at once, but seldom all.
 struct ClockFit {
-    std::int64_t count = 0;
+    std::int64_t count = 0;  // quarters of a second, without the one that goes on
+    std::int64_t quarter = 0;
+    double shortest_host_s = platform::kMissing;  // of the quarter that goes on, since the first sample
+    double shortest_ahead_s = platform::kMissing;
     double first_host_s = 0.0;
     double first_device_s = 0.0;
     double mean_host_s = 0.0;    // since the first sample
@@ -26,9 +30,9 @@ struct ClockFit {
 };
 
 struct ClockDrift {
-    // Positive: the device's clock is fast. NaN before 30 samples over some 4 s.
+    // Positive: the device's clock is fast. NaN before 16 quarters of a second with samples, over some 4 s.
     double ppm = platform::kMissing;
-    // Assumes random delays; a computer that becomes busy during the check adds to the error.
+    // Assumes random shortest delays; a computer that is busy for seconds on end adds to the error.
     double standard_error_ppm = platform::kMissing;
 };
 

@@ -41,8 +41,9 @@ void refuse_no_forces(const Map& map, const std::string& file) {
     }
     const double typical_N = median(std::move(deepest_N));
     if (typical_N > 0.0) return;
-    throw files::bad_input(file, "", files::short_number(typical_N) + " N at the greatest depths (median)",
-                           "forces that rise with depth (is the sign the other way round? with --negate-force, or without)");
+    throw files::bad_input(
+        file, "", files::short_number(typical_N) + " N at the greatest depths (median)",
+        "forces that rise with depth (is the sign the other way round? with --negate-force, or without)");
 }
 
 // Below what was measured, filled forces would stay what they are above: nothing would resist.

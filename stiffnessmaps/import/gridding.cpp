@@ -34,16 +34,22 @@ struct SquareIndex {
 
 }  // namespace
 
-std::optional<AxisFit> fit_axis(const std::vector<double>& places_m) {
+std::optional<AxisFit> fit_axis(const std::vector<double>& places_m, double same_m) {
     std::vector<double> sorted = places_m;
     std::sort(sorted.begin(), sorted.end());
-    constexpr double kSame_m = 1e-5;
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-        if (sorted[i] - sorted[i - 1] > kSame_m) steps.push_back(sorted[i] - sorted[i - 1]);
+    std::vector<double> middle_m;  // of each group
+    for (std::size_t i = 0, from = 0; i < sorted.size(); ++i) {
+        if (i + 1 < sorted.size() && sorted[i + 1] - sorted[i] <= same_m) continue;
+        middle_m.push_back(std::accumulate(sorted.begin() + static_cast<std::ptrdiff_t>(from),
+                                           sorted.begin() + static_cast<std::ptrdiff_t>(i) + 1, 0.0) /
+                           static_cast<double>(i + 1 - from));
+        from = i + 1;
     }
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < middle_m.size(); ++i) steps.push_back(middle_m[i] - middle_m[i - 1]);
     AxisFit fit;
     fit.axis.origin_m = sorted.empty() ? 0.0 : sorted.front();
+    if (steps.empty() && !sorted.empty() && sorted.back() - sorted.front() > 2.0 * same_m) return std::nullopt;
     if (steps.empty()) return fit;
     const double pitch_m = median(steps);  // a gap in the grid makes some steps longer, never most
     const double extent_m = sorted.back() - sorted.front();

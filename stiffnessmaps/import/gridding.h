@@ -16,14 +16,14 @@ struct GridAxis {
     double at(std::size_t i) const { return origin_m + pitch_m * static_cast<double>(i); }
 };
 
-// Finds the regular axis that most places lie on: its pitch is first the median step between different places; origin
-// and pitch are then fitted by least squares. `off` counts places farther than a tenth of the pitch from it. Returns
+// Finds the regular axis that most places lie on: its pitch is first the median step between groups of places, in which each
+// is at most same_m from the next; origin and pitch are then fitted by least squares. `off` counts places farther than a tenth of the pitch from it. Returns
 // nothing if there is none, or if it had more than 10000 positions.
 struct AxisFit {
     GridAxis axis;
     std::size_t off = 0;
 };
-std::optional<AxisFit> fit_axis(const std::vector<double>& places_m);
+std::optional<AxisFit> fit_axis(const std::vector<double>& places_m, double same_m = 1e-5);
 
 // Returns the index of the nearest position on the axis; nothing if it is farther than a tenth of the pitch, or
 // outside.

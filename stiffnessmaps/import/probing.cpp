@@ -233,8 +233,10 @@ GridChoice choose_grid(const Probing& probing, const ImportOptions& options, con
             "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane (or on-grid)");
     }
     GridChoice choice;
-    const auto x = fit_axis(x_m);
-    const auto y = fit_axis(y_m);
+    constexpr double kSame_m = 1e-5, kJitter = 0.2;  // of measured places, up to a tenth to each side
+    const double same_m = std::max(kSame_m, kJitter * near_m);
+    const auto x = fit_axis(x_m, same_m);
+    const auto y = fit_axis(y_m, same_m);
     const std::size_t n = probing.points.size();
     const bool sparse =
         !x || !y ||
@@ -376,8 +378,9 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     clean_curves(probing, options, file, source, report);
     report.rejected_points = before - probing.points.size();
     if (probing.points.empty())
-        throw files::bad_input(file, "", "no point with two depths in contact",
-                               "forces that rise with depth (is the sign the other way round? with --negate-force, or without)");
+        throw files::bad_input(
+            file, "", "no point with two depths in contact",
+            "forces that rise with depth (is the sign the other way round? with --negate-force, or without)");
 
     const GridChoice grid = choose_grid(probing, options, file);
     note_grid(grid.plan, grid.on_grid, options, source);

@@ -107,6 +107,24 @@ void check_first_rows(const Probing& probing, const std::string& file) {
         "air, and contact is where the force begins)");
 }
 
+// Empties places that begin deeper than the others by three quarters of a step or more, if they are a few: their first row,
+// the contact, is missing, and counted from the next one they would seem softer. Returns how many.
+std::size_t leave_out_late_starts(Probing& probing) {
+    constexpr double kNear_m = 1e-4, kShareOfStep = 0.75, kFew = 0.1;
+    std::vector<double> first_m;
+    std::vector<double> step_m;
+    for (const ProbedPoint& p : probing.points) {
+        first_m.push_back(p.depth_m[0]);
+        step_m.push_back(p.depth_m[1] - p.depth_m[0]);
+    }
+    const double latest_m = median(std::move(first_m)) + std::max(kNear_m, kShareOfStep * median(std::move(step_m)));
+    const auto late = [&](const ProbedPoint& p) { return p.depth_m[0] > latest_m; };
+    const auto n = static_cast<std::size_t>(std::count_if(probing.points.begin(), probing.points.end(), late));
+    if (static_cast<double>(n) > kFew * static_cast<double>(probing.points.size())) return 0;
+    std::erase_if(probing.points, late);
+    return n;
+}
+
 // Returns the slopes (b, c) of the plane z = a + b x + c y through the contact heights.
 Eigen::Vector2d contact_slope(const Probing& probing) {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -153,7 +171,11 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
 
     const ContactStart contact =
         options.contact.value_or(probing.depth_from_z ? ContactStart::threshold : ContactStart::first_row);
-    if (!options.contact && !probing.depth_from_z) check_first_rows(probing, file);
+    std::size_t late = 0;
+    if (!options.contact && !probing.depth_from_z) {
+        check_first_rows(probing, file);
+        late = leave_out_late_starts(probing);
+    }
     for (ProbedPoint& p : probing.points) {
         for (auto& lateral : p.lateral_N) {  // the lateral force counts from its first row, too
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
@@ -182,7 +204,9 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
     add_choice(source, "contact", name_of(contact),
                probing.depth_from_z ? "depth comes from z, the surface must be found"
-                                    : "the recording has depths: its robot had found the surface",
+                                    : "the recording has depths: its robot had found the surface; places left out that "
+                                      "begin deeper: " +
+                                          std::to_string(late),
                "--contact", options.contact.has_value());
     if (contact == ContactStart::threshold) {
         add_choice(source, "contact_force_N", threshold_N,

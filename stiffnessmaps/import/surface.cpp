@@ -284,9 +284,9 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
         if (static_cast<double>(samples.force_N[2][s]) > kTouching * great_N) chosen.sample.push_back(s);
     }
     if (!(great_N > 0.0) || chosen.sample.size() < 16) {
-        throw files::bad_input(file, "",
-                               "a 95th percentile of the force along z of " + files::short_number(great_N) + " N",
-                               "a tool that presses, with a positive force along z (the other sign: with --negate-force, or without)");
+        throw files::bad_input(
+            file, "", "a 95th percentile of the force along z of " + files::short_number(great_N) + " N",
+            "a tool that presses, with a positive force along z (the other sign: with --negate-force, or without)");
     }
     chosen.push.resize(chosen.sample.size());
     chosen.n_z.resize(chosen.sample.size());

@@ -205,6 +205,30 @@ TEST_CASE("calibrate: the loop between pressing and releasing is reported, by ph
     CHECK(by_time.hysteresis->median_relative == close_to(0.2 / 1.1).epsilon(0.15));
 }
 
+TEST_CASE("calibrate: points captured upwards, repeat after repeat, have no release, and no hysteresis") {
+    std::mt19937_64 random(kSeed);
+    std::normal_distribution<double> noise(0.0, 0.02);
+    CalibrationRows rows;
+    for (int i = 0; i < 120; ++i) {
+        const double level = 0.05 + 0.93 * (i % 20) / 19.0;
+        add_row(level, 0.2 * std::exp(3.1 * level) * (1.0 + noise(random)), i / 20, rows);
+        rows.time_s.push_back(2.0 * i);
+    }
+    CHECK_FALSE(calibrate(rows, {}).hysteresis);
+}
+
+TEST_CASE("calibrate: presses of one reading each are no repeats that differ, and the first response is the lightest") {
+    CalibrationRows rows;
+    for (int i = 0; i < 38; ++i) {
+        const double level = 0.05 * (1 + i % 19);
+        add_row(level, (0.1 + 3.0 * std::pow(level, 1.3)) * (i < 19 ? 0.98 : 1.02), i, rows);
+    }
+    const Calibration calibration = calibrate(rows, {});
+    CHECK_FALSE(calibration.drift);
+    CHECK_FALSE(any_with(calibration.warnings, "repeats"));
+    CHECK(calibration.ends.activation_N == close_to(0.98 * (0.1 + 3.0 * std::pow(0.05, 1.3))));
+}
+
 TEST_CASE("calibrate: repeats that drift are told") {
     CalibrationRows rows;
     for (int r = 0; r < 5; ++r) {

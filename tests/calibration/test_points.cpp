@@ -33,6 +33,7 @@ TEST_CASE("points: columns by name, gram-force becomes newtons") {
         read("repeat,force_gf,level,phase,time_s\nb,10,0.1,press,1\nb,100,0.5,press,2\na,200,0.9,release,0\n");
     CHECK(rows.force_N[1] == close_to(0.980665));
     CHECK(rows.repeat == std::vector<int>{0, 0, 1});
+    CHECK(read("level,force_N,repeat\n0.1,1,10\n0.2,2,9\n0.3,3,11\n").repeat == std::vector<int>{1, 0, 2});
     CHECK(rows.phase[2] == PressPhase::release);
     CHECK(rows.line[2] == 4);
     CHECK(read("pressure_norm,force_N\n0,0.1\n0.5,1\n1,2\n").level[1] == 0.5);

@@ -34,6 +34,20 @@ TEST_CASE("gridding: an axis is found with gaps in it, with jitter, and with a s
     CHECK_FALSE(fit_axis({0.0, 1e-3, 2e-3, 1e3}).has_value());
 }
 
+TEST_CASE("gridding: measured places that scatter about a grid by a few hundredths of its pitch lie on it") {
+    MESSAGE("seed 5");
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> off_m(-5e-5, 5e-5);
+    std::vector<double> places;
+    for (int i = 0; i < 300; ++i) places.push_back(2e-3 * (i % 20) + off_m(random));
+    const auto fit = fit_axis(places, 4e-4);
+    REQUIRE(fit.has_value());
+    CHECK(fit->off == 0);
+    CHECK(fit->axis.n == 20);
+    CHECK(fit->axis.pitch_m == close_to(2e-3).epsilon(1e-3));
+    CHECK_FALSE(fit_axis({0.0, 3e-4, 6e-4, 9e-4}, 4e-4).has_value());  // one group, as scattered places make
+}
+
 TEST_CASE("gridding: groups of places") {
     std::vector<double> x;
     std::vector<double> y;

@@ -73,6 +73,21 @@ TEST_CASE("probing: grid from the commanded positions, force at contact subtract
     CHECK(choice_of(map, "contact")->option == "--contact");
 }
 
+TEST_CASE("probing: a place whose contact is missing is left out, not taken for softer tissue") {
+    std::string text = kHeader;
+    for (int p = 0; p < 12; ++p) {
+        const std::string rows = point(p, 2.0 * (p % 4), 2.0 * (p / 4));
+        text += p == 5 ? rows.substr(rows.find('\n') + 1) : rows;
+    }
+    ImportReport report;
+    const Map map = imported(text, {}, &report);
+    CHECK(report.rejected_points == 1);
+    CHECK(report.missing_cells == 1);
+    CHECK(std::isnan(map.normal_N[5]));
+    CHECK(map.filled_normal_N[5] == close_to(0.5f));
+    CHECK(contains(choice_of(map, "contact")->how, "begin deeper: 1"));
+}
+
 TEST_CASE("probing: bad recordings are refused by line and column") {
     CHECK(refusal(small()) == "");
     CHECK(contains(refusal(replaced("fn_N", "pull")), "expected a column for fn (fn, normal_force"));
