@@ -71,6 +71,7 @@ void left_column(const Shown& shown, const PanelArea& area, Gui& gui, HistoryVie
         std::max(there_px - (kTarget_mm + 26.0f) * gui.mm(), 0.55f * there_px);  // the rest may scroll
     ImGui::BeginChild("trials", ImVec2(0.0f, list_px), false, ImGuiWindowFlags_NavFlattened);
     trial_list(gui, history);
+    scroll_by_drag(gui);
     ImGui::EndChild();
     ImGui::BeginChild("below", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (history.asks) {

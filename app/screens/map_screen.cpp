@@ -108,6 +108,7 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
         ImGui::PopStyleVar(2);
         ImGui::PopID();
     }
+    scroll_by_drag(gui);
     ImGui::EndChild();
     if (!wanted.empty()) choose_map(wanted, browser);
 }
@@ -287,6 +288,7 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     // Page Up and Page Down choose the depth here
     if (gui.pressed(platform::key::home)) ImGui::SetScrollY(0.0f);
     if (gui.pressed(platform::key::end)) ImGui::SetScrollY(ImGui::GetScrollMaxY());
+    scroll_by_drag(gui);
     ImGui::EndChild();
     end_part("notes", gui);
     end_panel("maps", gui);

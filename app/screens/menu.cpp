@@ -42,6 +42,7 @@ void choices(const char* title, const std::vector<Choice>& list, const std::stri
         ImGui::PopStyleVar(2);
         ImGui::PopID();
     }
+    scroll_by_drag(gui);
     ImGui::EndChild();
 }
 
@@ -235,6 +236,7 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, ViewState& vi
     if (view.menu_page == MenuPage::trial) trial_page(shown, gui, wishes);
     if (view.menu_page == MenuPage::settings) settings_page(shown, gui, wishes);
     if (view.menu_page == MenuPage::experimenter) experimenter_page(shown, gui, view, wishes);
+    scroll_by_drag(gui);
     ImGui::EndChild();
     end_panel("menu", gui);
 }

@@ -54,7 +54,20 @@ bool press_area(const char* name, ImVec2 size) {
     return pressed;
 }
 
+void scroll_by_drag(const Gui& gui) {
+    constexpr float kDrag_mm = 5.0f;  // a tap rolls less
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    const ImGuiWindow& window = *ImGui::GetCurrentWindow();
+    const bool in_field = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
+    if (window.ScrollMax.y <= 0.0f || !ImGui::IsMouseDown(0) || in_field) return;
+    if (!window.InnerRect.Contains(g.IO.MouseClickedPos[0])) return;
+    if (g.IO.MouseDragMaxDistanceAbs[0].y < kDrag_mm * gui.mm()) return;
+    ImGui::ClearActiveID();
+    ImGui::SetScrollY(std::clamp(ImGui::GetScrollY() - g.IO.MouseDelta.y, 0.0f, ImGui::GetScrollMaxY()));
+}
+
 void end_scrolled(const char* name, Gui& gui) {
+    scroll_by_drag(gui);
     const bool controls = ImGui::GetCurrentWindow()->DC.NavLayersActiveMaskNext != 0;
     if (!controls && ImGui::GetScrollMaxY() > 0.0f) {
         const float page_px = ImGui::GetWindowHeight() - ImGui::GetTextLineHeightWithSpacing();

@@ -27,6 +27,10 @@ inline constexpr ImU32 kHatch = IM_COL32(20, 22, 24, 190);
 inline constexpr float kTarget_mm = 9.0f;  // least height of a control that is touched
 inline constexpr float kMark_mm = 12.0f;
 
+// Before the end of a child window: a finger that is drawn over what scrolls moves the content, and presses no button on its
+// way. A text field keeps it.
+void scroll_by_drag(const Gui& gui);
+
 // Begins a panel that fills exactly this area, without decoration, and claims the area. Content that does not fit can
 // be scrolled, and gui.note_overflow() is called.
 void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity = 1.0f);

@@ -274,12 +274,16 @@ std::filesystem::path points_file(const RecordArguments& arguments) {
 }
 
 std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
-    std::unique_ptr<devices::ForceSensor> device = open_sensor(arguments);
     auto recording = std::make_unique<Recording>();
     recording->arguments = arguments;
+    const auto lock = [&] {
+        if (!recording->lock && std::filesystem::is_directory(arguments.folder))
+            recording->lock.emplace(arguments.folder, "another recording into it");
+    };
+    lock();  // before a sensor that another recording reads is disturbed
+    std::unique_ptr<devices::ForceSensor> device = open_sensor(arguments);
     if (!arguments.resume) std::filesystem::create_directories(arguments.folder);
-    if (std::filesystem::is_directory(arguments.folder))
-        recording->lock.emplace(arguments.folder, "another recording into it");
+    lock();
     open_session(arguments, recording->session);
     keep_units(arguments);
     recording->resumed = recording->zero_at = recording->session.points.size();

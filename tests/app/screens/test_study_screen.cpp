@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <doctest/doctest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include "files/text.h"
 #include "tests/app/live/desk.h"
@@ -247,4 +249,55 @@ TEST_CASE("study screen: digits answer the scales one after the other, and Enter
     tap(desk.window, SDLK_RETURN);
     live_frames(desk, 4);
     CHECK_FALSE(std::holds_alternative<step::Questions>(run.step));
+}
+
+TEST_CASE("study screen: a finger drawn over a long page scrolls it and presses no answer; a tap still does") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json");
+    protocol.demographics.clear();
+    for (int i = 0; i < 30; ++i) {
+        Item item;
+        item.id = "q" + std::to_string(i);
+        item.text = "Question " + std::to_string(i);
+        item.choices = {"yes", "no"};
+        protocol.demographics.push_back(item);
+    }
+    desk.app.doing = open_study_run(protocol, folder / "log", "p1");
+    live_frames(desk, 6);
+    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    const auto items = [] {
+        for (ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if (std::string(window->Name).find("/items") != std::string::npos) return window;
+        }
+        return static_cast<ImGuiWindow*>(nullptr);
+    };
+    REQUIRE(items() != nullptr);
+    const ImRect area = items()->InnerRect;
+    const int x_px = static_cast<int>(area.Min.x) + 40, low_px = static_cast<int>(area.Max.y) - 20;
+    const auto answered = [&] {
+        const std::vector<std::string>& answers = desk.app.view.study.answers;
+        return std::any_of(answers.begin(), answers.end(), [](const std::string& one) { return !one.empty(); });
+    };
+    for (int from_px = low_px; from_px > low_px - 100; from_px -= 12) {  // from buttons and from between them
+        CAPTURE(from_px);
+        const float before_px = items()->Scroll.y;
+        button(desk.window, true, x_px, from_px);
+        live_frames(desk, 2);
+        for (int i = 1; i <= 10; ++i) {
+            move_mouse(desk.window, x_px, from_px - 12 * i);
+            live_frames(desk, 1);
+        }
+        button(desk.window, false, x_px, from_px - 120);
+        live_frames(desk, 3);
+        CHECK(items()->Scroll.y > before_px + 60.0f);
+        CHECK(items()->Scroll.y < before_px + 121.0f);
+        CHECK_FALSE(answered());
+    }
+    for (int y_px = static_cast<int>(area.Min.y) + 10; y_px < low_px && !answered(); y_px += 12) {
+        click(desk.window, x_px, y_px);
+        live_frames(desk, 4);
+    }
+    CHECK(answered());
 }
