@@ -189,9 +189,17 @@ std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::
                : std::vector<double>(inside.begin(), inside.begin() + count);
 }
 
+// Whether each force stands in two rows or more, on average: weights that are put on again and again. The level scatters, the
+// force does not.
+bool are_weights(const CalibrationRows& rows) {
+    const std::set<double> forces_N(rows.force_N.begin(), rows.force_N.end());
+    return 2 * forces_N.size() <= rows.force_N.size();
+}
+
 // Noise at a plateau that begins at force_N: as great as in the rows next below, in newtons or in share of the force.
 double noise_at_plateau_N(const CalibrationRows& rows, const std::vector<std::size_t>& order, LevelRange range,
                           double plateau, double force_N) {
+    if (are_weights(rows)) return 0.0;  // from row to row the weights' steps would seem noise
     std::vector<double> below = quarter(rows, order, range.lowest, plateau, true);
     const double noise = noise_N(below);
     if (std::any_of(below.begin(), below.end(), [](double one_N) { return one_N <= 0.0; })) return noise;

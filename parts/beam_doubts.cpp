@@ -95,17 +95,34 @@ bool in_one_piece(const Cut& slice) {
 }
 
 struct Moments {
-    double weight = 0.0;    // sum of E
-    double middle = 0.0;    // across, voxels
+    double weight = 0.0;  // sum of E
+    double middle = 0.0;  // across, voxels
+    double middle_along = 0.0;
     double turned = 0.0;    // Iyz / sqrt(Iyy Izz)
     int low = 0, high = 0;  // across, of what is filled
     double poisson = 0.0;   // the largest
+    bool twists = false;    // open, and not symmetric about the plane of the load through its middle
 };
+
+// Of what is filled: the share, by E, that has not the same material in its mirror image across.
+double unlike_its_image(const Cut& slice, const std::vector<Material>& materials, const Moments& m) {
+    double unlike = 0.0;
+    for (int k = 0; k < slice.along; ++k) {
+        for (int i = 0; i < slice.across; ++i) {
+            const int material = slice.at(i, k);
+            if (material < 0) continue;
+            const int image = static_cast<int>(std::floor(2.0 * m.middle - (i + 0.5)));
+            if (slice.at(image, k) != material) unlike += materials[static_cast<std::size_t>(material)].young_Pa;
+        }
+    }
+    return unlike / m.weight;
+}
 
 Moments moments_of(const Cut& slice, const std::vector<Material>& materials) {
     Moments out;
     out.low = slice.across;
-    double sum_k = 0.0, sum_ii = 0.0, sum_kk = 0.0, sum_ik = 0.0;
+    double sum_k = 0.0, sum_ii = 0.0, sum_kk = 0.0, sum_ik = 0.0, filled = 0.0;
+    int low_k = slice.along, high_k = 0;
     for (int k = 0; k < slice.along; ++k) {
         for (int i = 0; i < slice.across; ++i) {
             const int material = slice.at(i, k);
@@ -119,6 +136,9 @@ Moments moments_of(const Cut& slice, const std::vector<Material>& materials) {
             sum_ik += E * i * k;
             out.low = std::min(out.low, i);
             out.high = std::max(out.high, i + 1);
+            low_k = std::min(low_k, k);
+            high_k = std::max(high_k, k + 1);
+            ++filled;
             out.poisson = std::max(out.poisson, materials[static_cast<std::size_t>(material)].poisson);
         }
     }
@@ -127,14 +147,18 @@ Moments moments_of(const Cut& slice, const std::vector<Material>& materials) {
     const double ii = sum_ii / out.weight - i_mean * i_mean + 1.0 / 12.0;  // a voxel's own too
     const double kk = sum_kk / out.weight - k_mean * k_mean + 1.0 / 12.0;
     out.middle /= out.weight;
+    out.middle_along = k_mean;
+    const bool open = filled < kOpen * (out.high - out.low) * (high_k - low_k);
+    out.twists = open && unlike_its_image(slice, materials, out) > kMostUnlike;
     out.turned = std::abs(sum_ik / out.weight - i_mean * k_mean) / std::sqrt(ii * kk);
     return out;
 }
 
 // What the slices of a beam have in common.
 struct Sections {
-    int count = 0, split = 0, turned = 0;
+    int count = 0, split = 0, turned = 0, twists = 0;
     double split_at_m = 0.0;
+    double strays = 0.0;  // how far the middle goes to and fro, of all; voxels
     double most_turned = 0.0;
     double middle = 0.0;   // across, of all; voxels
     double width = 0.0;    // mean; voxels
@@ -155,7 +179,7 @@ Sections sections_of(const Part& part, const BeamPlace& place) {
     cut.material.resize(static_cast<std::size_t>(cut.across) * static_cast<std::size_t>(cut.along));
     Sections out;
     Cut before;
-    Moments m;
+    Moments m, last;
     bool whole = true;
     for (int s = first; s < end; ++s) {
         cut_at(s, cutter, cut);
@@ -165,12 +189,15 @@ Sections sections_of(const Part& part, const BeamPlace& place) {
             before = cut;
         }
         if (!(m.weight > 0.0)) continue;
+        if (out.count > 0) out.strays += std::hypot(m.middle - last.middle, m.middle_along - last.middle_along);
+        last = m;
         ++out.count;
         out.middle += m.middle;
         out.width += m.high - m.low;
         out.most_turned = std::max(out.most_turned, m.turned);
         out.poisson = std::max(out.poisson, m.poisson);
         if (m.turned > kMostTurned) ++out.turned;
+        if (m.twists) ++out.twists;
         if (whole) continue;
         if (out.split++ == 0) out.split_at_m = origin_m + (s + 0.5) * h;
     }
@@ -191,6 +218,11 @@ std::string section_doubt(const Part& part, const PartLoad& load, const BeamPlac
     if (sections.turned > kMostOdd * sections.count)
         return "its section is turned against the plane of the load (Iyz is " +
                files::short_number(100.0 * sections.most_turned) + " % of sqrt(Iyy Izz)): it gives way sideways too";
+    if (sections.strays > kMostStray * sections.count)
+        return "the middle of its sections strays by " + mm(h * sections.strays) + " in all over " + mm(length_m) +
+               ": it is no straight beam";
+    if (sections.twists > kMostOdd * sections.count)
+        return "its section is open, and not symmetric about the plane of the load: it twists too";
     const auto third = static_cast<std::size_t>(3 - place.axis - place.bends);
     const double beside_m = std::abs(load.at_m[third] - part.voxels.frame.origin_m[third] - h * sections.middle);
     if (!load.face && beside_m > 0.5 * h * sections.width)

@@ -199,6 +199,21 @@ TEST_CASE("points: silence below activation and the plateau above saturation are
     CHECK(std::isnan(ends_of(rows, {0.0, 1.0}).saturation_N));
 }
 
+TEST_CASE("points: weights put on several times saturate a pen where the first of them is at full level") {
+    std::string text = "repeat,level,force_gf\n";
+    for (int r = 0; r < 3; ++r) {
+        for (const double weight_gf : {10.0, 20.0, 50.0, 100.0, 200.0, 300.0, 400.0, 500.0, 600.0}) {
+            const double level = weight_gf >= 400.0 ? 1.0 : 0.22 * std::log(weight_gf / 5.0) * (1.0 + 0.002 * r);
+            text += std::to_string(r) + "," + number_text(level) + "," + number_text(weight_gf) + "\n";
+        }
+    }
+    const CalibrationRows rows = read(text);
+    const Ends ends = ends_of(rows, {0.0, 1.0});
+    CHECK(ends.saturation_N == close_to(400.0 * 9.80665e-3));
+    CHECK(ends.saturated == 6);
+    CHECK(fit_points(rows, {0.0, 1.0}, ends).force_N.maxCoeff() == close_to(400.0 * 9.80665e-3));
+}
+
 TEST_CASE("points: noise in share of the force is no saturation, however many rows there are") {
     for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
         for (const int n : {300, 1000, 5000}) {

@@ -77,6 +77,26 @@ TEST_CASE("beam doubts: a load beside the bar twists it") {
     CHECK(contains(doubt(json), "mm beside the axis and twists it"));
 }
 
+TEST_CASE("beam doubts: a channel twists under a load beside its shear centre, a closed or upright one does not") {
+    Json json = bar(60, 10, 10);
+    json["shape"].push_back({{"remove", {{"box", box(0, 1.5, 1.5, 60, 10, 8.5)}}}});  // open to +y, under -z
+    CHECK(contains(doubt(json), "its section is open, and not symmetric about the plane of the load"));
+    Json upright = json;
+    upright["loads"]["tip"]["direction"] = "-y";
+    CHECK(doubt(upright).empty());
+    json["shape"].back()["remove"]["box"] = box(0, 1.5, 1.5, 60, 8.5, 8.5);
+    CHECK(doubt(json).empty());
+}
+
+TEST_CASE("beam doubts: a folded bar is no straight beam") {
+    Json json = bar(60, 10, 10);
+    for (int i = 0; i < 5; ++i) {
+        const double z = i % 2 == 0 ? 2.0 : 0.0;
+        json["shape"].push_back({{"remove", {{"box", box(6.0 + 10.0 * i, 0, z, 12.0 + 10.0 * i, 10, z + 8.0)}}}});
+    }
+    CHECK(contains(doubt(json), "it is no straight beam"));
+}
+
 TEST_CASE("beam doubts: what is wider than long is a plate") {
     CHECK(contains(doubt(bar(20, 20, 2)), "a plate, up to 8.5"));
 }
