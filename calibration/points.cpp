@@ -176,35 +176,51 @@ bool stays(const CalibrationRows& rows, double plateau, double noise) {
     return several > 0 && 2 * rising > several;
 }
 
-// Returns the forces of the quarter of the rows next to one end (at least five), without the rows at the very end.
-std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest,
-                            double highest, bool top) {
-    std::vector<double> inside;
+// Returns the quarter of the rows next to one end (at least five), in order of level, without the rows at the very end.
+std::vector<std::size_t> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest,
+                                 double highest, bool top) {
+    std::vector<std::size_t> inside;
     for (const std::size_t i : order) {
-        if (rows.level[i] > lowest && rows.level[i] < highest) inside.push_back(rows.force_N[i]);
+        if (rows.level[i] > lowest && rows.level[i] < highest) inside.push_back(i);
     }
     const std::size_t n = std::min(inside.size(), std::max<std::size_t>(inside.size() / 4, 5));
     const auto count = static_cast<std::ptrdiff_t>(n);
-    return top ? std::vector<double>(inside.end() - count, inside.end())
-               : std::vector<double>(inside.begin(), inside.begin() + count);
+    return top ? std::vector<std::size_t>(inside.end() - count, inside.end())
+               : std::vector<std::size_t>(inside.begin(), inside.begin() + count);
 }
 
-// Whether each force stands in two rows or more, on average: weights that are put on again and again. The level scatters, the
-// force does not.
-bool are_weights(const CalibrationRows& rows) {
-    const std::set<double> forces_N(rows.force_N.begin(), rows.force_N.end());
-    return 2 * forces_N.size() <= rows.force_N.size();
+// Returns the scatter of y about the best line over x; infinite with fewer than four.
+double scatter_about_line(const std::vector<double>& x, const std::vector<double>& y) {
+    if (x.size() < 4) return kInfinity;
+    const auto n = static_cast<Eigen::Index>(x.size());
+    const Eigen::ArrayXd X = Eigen::Map<const Eigen::ArrayXd>(x.data(), n),
+                         Y = Eigen::Map<const Eigen::ArrayXd>(y.data(), n);
+    const Eigen::ArrayXd dx = X - X.mean(), dy = Y - Y.mean();
+    const double spread = dx.square().sum(), slope = spread > 0.0 ? (dx * dy).sum() / spread : 0.0;
+    return std::sqrt((dy - slope * dx).square().sum() / static_cast<double>(n - 2));
 }
 
-// Noise at a plateau that begins at force_N: as great as in the rows next below, in newtons or in share of the force.
+// Noise next to an end where the force is force_N: as great as in these rows, in newtons or in share of the force, by second
+// differences; of few rows, about a line of ln F if that is less. Few rows stand far apart, as where weights are put on
+// again and again, and second differences take the steps for noise.
+double noise_at_end_N(const CalibrationRows& rows, const std::vector<std::size_t>& places, double force_N) {
+    std::vector<double> level, near_N, ln_F;
+    for (const std::size_t i : places) {
+        level.push_back(rows.level[i]);
+        near_N.push_back(rows.force_N[i]);
+        ln_F.push_back(std::log(rows.force_N[i]));
+    }
+    const double noise = noise_N(near_N);
+    if (std::any_of(near_N.begin(), near_N.end(), [](double one_N) { return one_N <= 0.0; })) return noise;
+    constexpr std::size_t kFew = 12;
+    const double about_line = places.size() > kFew ? kInfinity : force_N * scatter_about_line(level, ln_F);
+    return std::min(std::max(noise, force_N * noise_N(ln_F)), about_line);
+}
+
+// Noise at a plateau that begins at force_N.
 double noise_at_plateau_N(const CalibrationRows& rows, const std::vector<std::size_t>& order, LevelRange range,
                           double plateau, double force_N) {
-    if (are_weights(rows)) return 0.0;  // from row to row the weights' steps would seem noise
-    std::vector<double> below = quarter(rows, order, range.lowest, plateau, true);
-    const double noise = noise_N(below);
-    if (std::any_of(below.begin(), below.end(), [](double one_N) { return one_N <= 0.0; })) return noise;
-    for (double& one_N : below) one_N = std::log(one_N);
-    return std::max(noise, force_N * noise_N(below));
+    return noise_at_end_N(rows, quarter(rows, order, range.lowest, plateau, true), force_N);
 }
 
 int repeat_of(const CalibrationRows& rows, std::size_t i) { return rows.repeat.empty() ? 0 : rows.repeat[i]; }
@@ -290,7 +306,8 @@ FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& 
     for (std::size_t i = 0; i < rows.level.size(); ++i) {
         if (rows.level[i] <= range.lowest) silent_N = std::max(silent_N, rows.force_N[i]);
     }
-    const double floor_N = silent_N - 3.0 * noise_N(quarter(rows, order, range.lowest, range.highest, false));
+    const double floor_N =
+        silent_N - 3.0 * noise_at_end_N(rows, quarter(rows, order, range.lowest, range.highest, false), silent_N);
     const double plateau = std::isnan(ends.saturation_level) ? kInfinity : ends.saturation_level;
     const double ceiling_N =
         ends.saturation_N + 3.0 * noise_at_plateau_N(rows, order, range, plateau, ends.saturation_N);

@@ -24,6 +24,7 @@ struct Raster {
     double friction = kFriction;
     double lump = 0.0;       // extra stiffness in the middle, share
     double deeper_mm = 0.0;  // of every second pass
+    double exponent = 1.0;   // of force over depth
 };
 
 // 40 x 30 mm, lines along x 2 mm apart there and back, two passes out of phase, 100 Hz, 20 mm/s.
@@ -40,7 +41,7 @@ std::string raster(const Raster& r) {
                                                   : r.depth_mm + pass % 2 * r.deeper_mm;
                 const double lump =
                     1.0 + r.lump * std::exp(-((x - 20.0) * (x - 20.0) + (y - 15.0) * (y - 15.0)) / 50.0);
-                const double fn = kStiffness_N_per_mm * lump * depth;
+                const double fn = kStiffness_N_per_mm * lump * std::pow(depth, r.exponent);
                 const double ft = -direction * r.friction * fn;  // on the tool, along the surface
                 const double c = std::cos(r.tilt);
                 const double s = std::sin(r.tilt);
@@ -99,6 +100,21 @@ TEST_CASE(
     ImportOptions none;
     none.tangential = TangentialChoice::none;
     CHECK(imported(raster(r), none).tangential_x_N.empty());
+}
+
+TEST_CASE("sliding: the surface is found where the force is a power of depth between 1 and 2") {
+    for (const double exponent : {1.15, 1.3, 1.5, 1.8}) {
+        CAPTURE(exponent);
+        Raster r;
+        r.exponent = exponent;
+        const Map map = imported(raster(r));
+        CHECK(std::get<double>(choice_of(map, "surface_exponent")->value) == close_to(1.0 / exponent).epsilon(0.03));
+        ImportOptions known;
+        known.surface_z_m = 1e-3 * r.height_mm;
+        const Map right = imported(raster(r), known);
+        for (const double depth_mm : {1.0, 1.5, 2.0, 2.5})
+            CHECK(force_in(map, 20.0, 15.0, depth_mm) == close_to(force_in(right, 20.0, 15.0, depth_mm)).epsilon(0.03));
+    }
 }
 
 TEST_CASE("sliding: a lateral force that pushes the tool along is told, and not taken for friction") {
