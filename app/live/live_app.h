@@ -72,6 +72,7 @@ struct App {
     RunOptions options;
     Settings settings;
     std::filesystem::path settings_path;   // empty: this run keeps none
+    Settings kept_settings;                // as they were last read or saved
     Doing doing;                           // while the window is open, go_to() changes it; a study changes its own step
     bool guided = false;                   // the present trial is of the guided start
     std::filesystem::path history_folder;  // empty: no results are kept

@@ -51,7 +51,7 @@ void load(const RunOptions& options, App& app) {
     app.options = options;
     app.settings_path = settings_file();
     std::string problem;
-    app.settings = load_settings(app.settings_path, problem);
+    app.settings = app.kept_settings = load_settings(app.settings_path, problem);
     if (!problem.empty()) app.notices.problems.push_back(problem);
     if (options.test) app.settings.test_mode = true;
     if (options.practice) app.settings.test_mode = false;

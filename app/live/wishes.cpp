@@ -64,7 +64,8 @@ void stay_with_trace(Wishes& wishes) {
 
 void keep_settings(App& app) {
     if (app.settings_path.empty()) return;
-    const std::string problem = save_settings(app.settings, app.settings_path);
+    const std::string problem = save_settings(app.settings, app.kept_settings, app.settings_path);
+    if (problem.empty()) app.kept_settings = app.settings;
     if (!problem.empty()) app.notices.problems.push_back(problem);
     if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }

@@ -70,7 +70,7 @@ class Gui {
     void type_instead(const std::string& text);  // replaces the text of the field
 
     // Notes the name of a panel that does not fit into its area, for tests and for `run --json`.
-    void note_overflow(const std::string& panel) { overflow_ = panel; }
+    void note_overflow(const std::string& panel) const { overflow_ = panel; }
     const std::string& overflow() const { return overflow_; }
 
   private:
@@ -112,7 +112,7 @@ class Gui {
     float text_scale_ = 1.0f;
     std::string font_file_;
     std::string texts_;  // whose letters the panels have
-    std::string overflow_;
+    mutable std::string overflow_;
 };
 
 }  // namespace palpa::app

@@ -147,12 +147,13 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
         const bool by_key =
             (gui.pressed(platform::key::enter) && !gui.shows_focus()) ||
             (gui.pressed(platform::key::escape) && shown.notices.problems.empty());  // which it dismisses first
-        if (big_button(words::kStartPractice, words::kEnter, {60.0f * gui.mm(), kTarget_mm, true, true}, gui) ||
+        const float half_px = share_of_line_px(2);
+        const float start_px = std::min(60.0f * gui.mm(), half_px), repeat_px = std::min(44.0f * gui.mm(), half_px);
+        if (big_button(words::kStartPractice, words::kEnter, {start_px, kTarget_mm, true, true}, gui) ||
             (by_key && !menu))
             wishes.guided = false;
         ImGui::SameLine();
-        if (big_button(words::kRepeatGuided, "", {44.0f * gui.mm(), kTarget_mm, true, false}, gui))
-            wishes.guided = true;
+        if (big_button(words::kRepeatGuided, "", {repeat_px, kTarget_mm, true, false}, gui)) wishes.guided = true;
     } else if (big_button(words::kSkip, words::kEscape, {34.0f * gui.mm(), kTarget_mm, true, false}, gui) ||
                (gui.pressed(platform::key::escape) && !*menu_of(shown.doing) && shown.notices.problems.empty())) {
         wishes.guided = false;

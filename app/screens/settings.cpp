@@ -58,6 +58,20 @@ files::Json json_of(const Settings& s) {
     return json;
 }
 
+// What is in the file, with the changes from `kept` to `settings`.
+files::Json merged(const Settings& settings, const Settings& kept, Settings there) {
+    for (const auto& [screen, px_per_mm] : settings.px_per_mm) {
+        const auto before = kept.px_per_mm.find(screen);
+        if (before == kept.px_per_mm.end() || before->second != px_per_mm) there.px_per_mm[screen] = px_per_mm;
+    }
+    files::Json out = json_of(there);
+    const files::Json before = json_of(kept), now = json_of(settings);
+    for (const auto& [key, value] : now.items()) {
+        if (key != "screens" && value != before.at(key)) out[key] = value;
+    }
+    return out;
+}
+
 // Renames a settings file that cannot be read, which may have been written by hand, so that it is not overwritten.
 void move_broken_aside(const fs::path& file) {
     if (!fs::exists(file)) return;
@@ -91,12 +105,13 @@ Settings load_settings(const fs::path& file, std::string& problem) {
     return {};
 }
 
-std::string save_settings(const Settings& settings, const fs::path& file) {
+std::string save_settings(const Settings& settings, const Settings& kept, const fs::path& file) {
     if (file.empty()) return "settings are not kept: neither XDG_CONFIG_HOME nor HOME names a folder";
     try {
         fs::create_directories(file.parent_path());
         move_broken_aside(file);
-        files::write_text_atomically(file, files::json_text(json_of(settings)));
+        std::string problem;
+        files::write_text_atomically(file, files::json_text(merged(settings, kept, load_settings(file, problem))));
     } catch (const std::exception& error) {
         return std::string("settings are not kept: ") + error.what();
     }

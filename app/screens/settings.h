@@ -33,7 +33,8 @@ std::filesystem::path settings_file();
 // defaults are returned, and the next save moves the file aside instead of overwriting it.
 Settings load_settings(const std::filesystem::path& file, std::string& problem);
 
-// Saves the settings. Returns in words why they could not be saved, or nothing.
-std::string save_settings(const Settings& settings, const std::filesystem::path& file);
+// Saves what differs from `kept`, as this window last read or saved it, and leaves the rest as another window may have saved
+// it since. Returns in words why nothing could be saved, or nothing.
+std::string save_settings(const Settings& settings, const Settings& kept, const std::filesystem::path& file);
 
 }  // namespace palpa::app

@@ -132,6 +132,7 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
     const ImVec2 high = ImGui::GetItemRectMax();
     const float small_px = 0.62f * ImGui::GetFontSize();
     const ImVec2 label_size = ImGui::CalcTextSize(label, nullptr, true);
+    if (label_size.x > size.x && look.hint[0] == '\0') gui.note_overflow(std::string("button ") + label);
     const float key_px = ImGui::CalcTextSize(key).x * 0.62f;
     if (*key != '\0' && label_size.x + 2.0f * key_px + 3.0f * gui.mm() < size.x) {
         const ImU32 colour = look.chosen ? IM_COL32(60, 66, 70, 255) : look.stops ? IM_COL32_WHITE : kPale;

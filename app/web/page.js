@@ -140,7 +140,7 @@ var Module = {
     locateFile: (file) => palpaFolder + file,
     print: (text) => console.log(text),
     printErr: (text) => console.warn(text),
-    onAbort: (what) => palpaPage.fail(String(what)),
+    onAbort: (what) => palpaPage.fail(/fetching of the wasm/.test(what) ? palpaWords.notLoaded : String(what)),
     // trials of earlier days are known before the first one of today
     preRun: [() => {
         addRunDependency('trials');

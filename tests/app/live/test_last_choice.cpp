@@ -34,10 +34,11 @@ struct Person {
     }
     void chose(const std::string& scene, const fs::path& profile) const {
         std::string problem;
-        Settings settings = load_settings(settings_file(), problem);
+        const Settings kept = load_settings(settings_file(), problem);
+        Settings settings = kept;
         settings.scene = scene;
         settings.profile = profile.string();
-        save_settings(settings, settings_file());
+        save_settings(settings, kept, settings_file());
     }
 };
 
