@@ -36,13 +36,13 @@ void fit(const platform::Sample& sample, ClockFit& clock) {
     const double since_ahead_s = (sample.t_device_s - clock.first_device_s) - since_s;
     constexpr double kQuarters_per_s = 4.0;
     const auto quarter = static_cast<std::int64_t>(kQuarters_per_s * since_s);
-    const bool shorter = since_ahead_s > clock.shortest_ahead_s;
+    const bool over = quarter > clock.quarter;  // times of one delivery may come in any order
     const double host_s = clock.shortest_host_s, ahead_s = clock.shortest_ahead_s;
-    if (shorter || quarter != clock.quarter) {
+    if (over || since_ahead_s > clock.shortest_ahead_s) {
         clock.shortest_host_s = since_s;
         clock.shortest_ahead_s = since_ahead_s;
     }
-    if (quarter == clock.quarter) return;
+    if (!over) return;
     clock.quarter = quarter;
     const double n = static_cast<double>(++clock.count);
     const double host_off_s = host_s - clock.mean_host_s;

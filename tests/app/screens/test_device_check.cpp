@@ -182,8 +182,7 @@ TEST_CASE("device check: a computer that is busy in half of the check does not s
         observe(sample, *check);
     }
     const ClockDrift drift = clock_drift(of_tool(Tool::pen, *check));
-    CHECK(std::abs(drift.ppm) < 4.0 * drift.standard_error_ppm);
-    CHECK(drift.standard_error_ppm < 400.0);
+    CHECK(std::abs(drift.ppm) < 500.0);  // the mean delays, 100 ms longer in the second half, would tell 7500
 }
 
 TEST_CASE("device check: without delays the drift is exact, from few samples too") {
