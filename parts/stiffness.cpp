@@ -19,6 +19,7 @@ namespace {
 using namespace mechanics;
 
 constexpr int kFewestCells = 2;
+constexpr std::int64_t kMostHalved = 60'000;  // cells that are halved to judge them: eight times as many take seconds
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 void judge_strain(const CellStrain& unit, double force_N, MethodResult& result) {
@@ -99,10 +100,12 @@ void judge_cells(const Part& part, const PartLoad& load, int voxels_per_cell, Me
     out.coarser = against(2 * voxels_per_cell);
     if (voxels_per_cell == 1 || !out.why_not.empty()) return;
     if (out.coarser && std::abs(*out.coarser) <= kMostByCells) return;
-    const std::optional<double> finer = against((voxels_per_cell + 1) / 2);
-    if (!finer || std::abs(*finer) <= kMostApart) return;
-    out.why_not = "on cells half as large the displacement is " + files::short_number(100.0 * std::abs(*finer)) +
-                  " % " + (*finer > 0.0 ? "greater" : "less") + ": smaller cells are needed";
+    const bool halved = out.cells <= kMostHalved;
+    const std::optional<double> other = halved ? against((voxels_per_cell + 1) / 2) : out.coarser;
+    if (!other || std::abs(*other) <= kMostApart) return;
+    out.why_not = std::string("on cells ") + (halved ? "half" : "twice") + " as large the displacement is " +
+                  files::short_number(100.0 * std::abs(*other)) + " % " + (*other > 0.0 ? "greater" : "less") +
+                  ": smaller cells are needed";
 }
 
 void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N, double energy_error,

@@ -17,8 +17,8 @@ struct GridAxis {
 };
 
 // Finds the regular axis that most places lie on: its pitch is first the median step between groups of places, in which each
-// is at most same_m from the next; origin and pitch are then fitted by least squares. `off` counts places farther than a tenth of the pitch from it. Returns
-// nothing if there is none, or if it had more than 10000 positions.
+// is at most same_m from the next; origin and pitch are then fitted by least squares. `off` counts places farther than a
+// tenth of the pitch from it. Returns nothing if there is none, or if it had more than 10000 positions.
 struct AxisFit {
     GridAxis axis;
     std::size_t off = 0;
