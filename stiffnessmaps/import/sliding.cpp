@@ -172,7 +172,7 @@ void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m
     add_choice(source, "surface_deviation_mm", choice_mm(surface.deviation_m), "of the samples' heights from that fit",
                "");
     add_choice(source, "surface_exponent", surface.exponent,
-               "depth as force to this power, from 1 to 0.5: which left least", "");
+               "depth as force to this power: 1 or 2/3, or another from 1 to 0.5 that left 4 % less", "");
     add_choice(
         source, "surface_tilt_deg", std::round(1e3 * surface.tilt_deg) / 1e3,
         options.remove_tilt ? "depth and force are along the surface's normal" : "kept: depth and force are along z",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "files/input_error.h"
@@ -202,27 +203,33 @@ Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, 
     return fit;
 }
 
-// Between 1 and 2/3, where real tissue is, the height would take up the difference: 0.25 mm at 1/1.3 under forces up to 1.3 N.
+// 1 or 2/3, unless another exponent leaves clearly less: noisy recordings hardly tell one from the next. Where they do, the
+// height of the surface would take up the difference, 0.25 mm at 1/1.3 under forces up to 1.3 N.
 Fit fit_best_exponent(const Surface& surface, const SurfaceSamples& samples, const Chosen& chosen, double typical_N,
                       double& exponent) {
+    const auto fit = [&](double m) { return fit_robustly(surface, samples, chosen, m, typical_N); };
+    const auto deviation = [](const Fit& one) {
+        return one.height_m.empty() ? std::numeric_limits<double>::infinity() : one.deviation_m;
+    };
     constexpr std::array kExponents{1.0, 0.9, 0.8, 0.7, 0.6, 0.5};
     std::array<Fit, kExponents.size()> fits;
     std::size_t best = 0;
     for (std::size_t i = 0; i < fits.size(); ++i) {
-        fits[i] = fit_robustly(surface, samples, chosen, kExponents[i], typical_N);
-        if (fits[i].height_m.empty()) continue;
-        if (fits[best].height_m.empty() || fits[i].deviation_m < fits[best].deviation_m) best = i;
+        fits[i] = fit(kExponents[i]);
+        if (deviation(fits[i]) < deviation(fits[best])) best = i;
     }
-    exponent = kExponents[best];
-    if (best == 0 || best + 1 == fits.size() || fits[best].height_m.empty()) return std::move(fits[best]);
-    const double low = fits[best - 1].deviation_m, middle = fits[best].deviation_m, high = fits[best + 1].deviation_m;
-    const double bend = low - 2.0 * middle + high;
-    if (!(bend > 0.0)) return std::move(fits[best]);
-    const double refined = kExponents[best] + 0.5 * (kExponents[best + 1] - kExponents[best]) * (low - high) / bend;
-    Fit fit = fit_robustly(surface, samples, chosen, refined, typical_N);
-    if (fit.height_m.empty() || fit.deviation_m > middle) return std::move(fits[best]);
-    exponent = refined;
-    return fit;
+    double other_m = kExponents[best];
+    if (best > 0 && best + 1 < fits.size()) {  // refined by a parabola
+        const double low = deviation(fits[best - 1]), middle = deviation(fits[best]), high = deviation(fits[best + 1]);
+        const double bend = low - 2.0 * middle + high;
+        if (std::isfinite(bend) && bend > 0.0) other_m -= 0.05 * (low - high) / bend;
+    }
+    Fit other = fit(other_m), hertz = fit(2.0 / 3.0);
+    Fit& usual = deviation(hertz) < deviation(fits[0]) ? hertz : fits[0];
+    constexpr double kClearly = 0.96;
+    const bool clearly = deviation(other) < kClearly * deviation(usual);
+    exponent = clearly ? other_m : &usual == &hertz ? 2.0 / 3.0 : 1.0;
+    return clearly ? std::move(other) : std::move(usual);
 }
 
 // Two heights of the tool fit any power of the force: then noise would choose the surface.

@@ -6,8 +6,8 @@
 //     n_z (s(x, y) - z) = c(x, y) F^m
 // along the surface's own normal n. s and c are the least-squares solution over all samples in contact, with second
 // differences along x and y held small (smoothness) and samples far off weighed less (Huber), repeated with the normals
-// of the last solution. m is from 1 to 1/2 (2/3: a ball, Hertz) and leaves the smallest deviation: among six, refined by
-// a parabola. If the force hardly changes, s and c cannot be told apart, and fit_surface throws.
+// of the last solution. m is 1 or 2/3 (a ball, Hertz), whichever leaves the smaller deviation, or another one from 1 to 0.5
+// that leaves 4 % less than both. If the force hardly changes, s and c cannot be told apart, and fit_surface throws.
 
 #include <string>
 #include <vector>
