@@ -57,7 +57,7 @@ void print_result(const files::Json& result) {
     };
     for (const auto& nodule : result["lag_over_nodules_mm"].items())
         line("over nodule " + nodule.key(), nodule.value());
-    line("beside the nodules", result["lag_beside_nodules_mm"]);
+    line(result["lag_over_nodules_mm"].empty() ? "everywhere" : "beside the nodules", result["lag_beside_nodules_mm"]);
 }
 
 void print(const files::Json& result, bool as_json) {

@@ -89,6 +89,11 @@ const char* name_of(ContactStart contact) {
     return contact == ContactStart::first_row ? "first-row" : contact == ContactStart::given ? "given" : "threshold";
 }
 
+constexpr const char* kWhatDepthsCountFrom =
+    "--contact given (depths and forces count from the surface as they stand), "
+    "--contact first-row (they count from the first row) or --contact threshold (they begin in the "
+    "air, and contact is where the force begins)";
+
 // Throws InputError for depths whose first row is far from 0: nothing tells whether it is the contact.
 void check_first_rows(const Probing& probing, const std::string& file) {
     std::vector<double> first_m;
@@ -100,16 +105,14 @@ void check_first_rows(const Probing& probing, const std::string& file) {
     constexpr double kNear_m = 1e-4;
     const double begins_m = median(std::move(first_m));
     if (std::abs(begins_m) <= std::max(kNear_m, 0.5 * median(std::move(step_m)))) return;
-    throw files::bad_input(
-        file, "depth", "depths that begin at " + files::short_number(1e3 * begins_m) + " mm (median)",
-        "0 at contact, or --contact given (depths and forces count from the surface as they stand), "
-        "--contact first-row (they count from the first row) or --contact threshold (they begin in the "
-        "air, and contact is where the force begins)");
+    throw files::bad_input(file, "depth",
+                           "depths that begin at " + files::short_number(1e3 * begins_m) + " mm (median)",
+                           std::string("0 at contact, or ") + kWhatDepthsCountFrom);
 }
 
 // Empties places that begin deeper than the others by three quarters of a step or more, if they are a few: their first row,
-// the contact, is missing, and counted from the next one they would seem softer. Returns how many.
-std::size_t leave_out_late_starts(Probing& probing) {
+// the contact, is missing, and counted from the next one they would seem softer. Returns how many. Throws InputError for more.
+std::size_t leave_out_late_starts(Probing& probing, const std::string& file) {
     constexpr double kNear_m = 1e-4, kShareOfStep = 0.75, kFew = 0.1;
     std::vector<double> first_m;
     std::vector<double> step_m;
@@ -120,7 +123,12 @@ std::size_t leave_out_late_starts(Probing& probing) {
     const double latest_m = median(std::move(first_m)) + std::max(kNear_m, kShareOfStep * median(std::move(step_m)));
     const auto late = [&](const ProbedPoint& p) { return p.depth_m[0] > latest_m; };
     const auto n = static_cast<std::size_t>(std::count_if(probing.points.begin(), probing.points.end(), late));
-    if (static_cast<double>(n) > kFew * static_cast<double>(probing.points.size())) return 0;
+    if (static_cast<double>(n) > kFew * static_cast<double>(probing.points.size()))
+        throw files::bad_input(
+            file, "depth",
+            std::to_string(n) + " of " + std::to_string(probing.points.size()) + " places that begin deeper than " +
+                files::short_number(1e3 * latest_m) + " mm",
+            std::string("the contact as the first row of nine tenths of them, or ") + kWhatDepthsCountFrom);
     std::erase_if(probing.points, late);
     return n;
 }
@@ -174,7 +182,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, const std::str
     std::size_t late = 0;
     if (!options.contact && !probing.depth_from_z) {
         check_first_rows(probing, file);
-        late = leave_out_late_starts(probing);
+        late = leave_out_late_starts(probing, file);
     }
     for (ProbedPoint& p : probing.points) {
         for (auto& lateral : p.lateral_N) {  // the lateral force counts from its first row, too

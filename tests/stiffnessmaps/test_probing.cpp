@@ -88,6 +88,24 @@ TEST_CASE("probing: a place whose contact is missing is left out, not taken for 
     CHECK(contains(choice_of(map, "contact")->how, "begin deeper: 1"));
 }
 
+TEST_CASE("probing: a third of the places without their contact are refused until it is said what depths count from") {
+    std::string text = kHeader;
+    for (int p = 0; p < 12; ++p) {
+        const std::string rows = point(p, 2.0 * (p % 4), 2.0 * (p / 4));
+        text += p % 3 == 0 ? rows.substr(rows.find('\n') + 1) : rows;
+    }
+    const std::string message = refusal(text);
+    CAPTURE(message);
+    CHECK(contains(message, "found 4 of 12 places that begin deeper than"));
+    CHECK(contains(message, "--contact given"));
+    ImportOptions options;
+    options.contact = ContactStart::given;
+    options.depths_m = {2e-3};
+    const Map given = imported(text, options);
+    CHECK(given.normal_N[0] == close_to(1.1f).epsilon(1e-3));  // without its contact
+    CHECK(given.normal_N[1] == close_to(1.1f).epsilon(1e-3));
+}
+
 TEST_CASE("probing: bad recordings are refused by line and column") {
     CHECK(refusal(small()) == "");
     CHECK(contains(refusal(replaced("fn_N", "pull")), "expected a column for fn (fn, normal_force"));
