@@ -155,9 +155,20 @@ int fix_side(const Voxels& voxels, const VoxelCells& cells, const GridLevel& lev
 
 int fix_region(const VoxelCells& cells, const GridLevel& level, const Region& region, std::uint8_t axes,
                std::vector<std::uint8_t>& fixed) {
+    // A region reaches from its lower sides to just below its upper ones, so that voxels belong to one of two neighbours;
+    // a body that is held up to a plane is held in it.
+    const double below_m = 1e-6 * cells.cell_m;
+    const auto in_or_on = [&](const Point& at_m) {
+        for (int k = 0; k < 8; ++k) {
+            Point near_m = at_m;
+            for (std::size_t c = 0; c < 3; ++c) near_m[c] -= (k >> c & 1) != 0 ? below_m : 0.0;
+            if (contains(region, near_m)) return true;
+        }
+        return false;
+    };
     int n = 0;
     for (std::size_t i = 0; i < level.node_place.size(); ++i) {
-        if (!contains(region, node_m(cells, level.node_place[i]))) continue;
+        if (!in_or_on(node_m(cells, level.node_place[i]))) continue;
         fixed[i] = static_cast<std::uint8_t>(fixed[i] | axes);
         ++n;
     }

@@ -191,6 +191,22 @@ TEST_CASE("part stiffness: cells of 0.7 to 1 mm that fit neither bands nor secti
     }
 }
 
+TEST_CASE("part stiffness: a box that holds a bar up to a plane holds it in that plane too") {
+    Json json = small_part();
+    json["size_mm"] = {40, 4, 4};
+    json["cell_mm"] = 1.0;
+    json["shape"] = {{{"add", {{"all", true}}}, {"material", "hard"}}};
+    json["loads"].erase("patch");
+    const auto held_up_to = [&](double x_mm) {
+        json["supports"] = {{{"box", {{"min_mm", {0, 0, 0}}, {"max_mm", {x_mm, 4, 4}}}}, {"fix", "xyz"}}};
+        const Part part = parsed(json);
+        return 1e3 * stiffness_of(part, part.loads[0], {{Method::voxels}, {}, 1e-8}).front().displacement_m;
+    };
+    const double up_to_8_mm = held_up_to(8.0);
+    CHECK(up_to_8_mm == close_to(held_up_to(8.5)).epsilon(1e-6));
+    CHECK(up_to_8_mm < 0.95 * held_up_to(7.5));
+}
+
 TEST_CASE("part stiffness: a force on air, nothing held and cells of half a voxel are refused") {
     const Part part = parsed(small_part());
     const auto message = [](const Part& changed, const StiffnessOptions& options) {
