@@ -208,24 +208,26 @@ double limit(double inside, double step, double greatest, double least, double t
     return at;
 }
 
-// Where the answers of a step begin to exclude u = ln sd: the flattest of a row of curves that they do not exclude. The row
-// begins with the step itself, at an sd far below the distances of the levels, since the profile may leave the interval and
-// come back.
-double flattest_inside(Profiles& profiles, double least, const Step& step) {
+// u = ln sd of the steepest and the flattest curve that the answers do not exclude, out of a row below `until`. The row
+// begins near the likeliest step, at an sd far below the distances of the levels, since the profile may leave the interval
+// and come back.
+struct RowEnds {
+    std::optional<double> steepest, flattest;
+};
+RowEnds row_inside(Profiles& profiles, double least, const Step& step, double until) {
     const std::span<const LevelAnswers> levels = profiles.levels;
     double closest = range_of(levels);
     for (std::size_t i = 1; i < levels.size(); ++i) closest = std::min(closest, levels[i].x - levels[i - 1].x);
     constexpr double kStep = 0.3;
-    const double first = std::log(std::min(1e-3 * range_of(levels), 0.05 * closest));
     profiles.last_pse = step.pse;
     profiles.last_lapse = step.lapse;
-    double inside = first;
-    for (double u = first; u < std::log(10.0 * range_of(levels)); u += kStep) {
-        if (profiles.of_slope(std::exp(-u), true) >= least) inside = u;
+    RowEnds ends;
+    for (double u = std::log(std::min(1e-3 * range_of(levels), 0.05 * closest)); u < until; u += kStep) {
+        if (profiles.of_slope(std::exp(-u), true) < least) continue;
+        if (!ends.steepest) ends.steepest = u;
+        ends.flattest = u;
     }
-    profiles.last_pse = step.pse;
-    profiles.of_slope(std::exp(-inside), true);  // from where the search goes on
-    return inside;
+    return ends;
 }
 
 // The interval of sd: of u = ln sd = -ln slope, in which the profile is most nearly a parabola.
@@ -236,15 +238,25 @@ OpenInterval sd_interval(Profiles& profiles, double greatest, double least, cons
     constexpr double kStep = 0.3, kTolerance = 1e-8;
     OpenInterval ci;
     const double constant = constant_log_likelihood(profiles.levels, 0.0, 1.0);  // whatever the lapse: sd is infinite
+    // beyond one of the row, from the step's place on
+    const auto limit_of_row = [&](double inside, double towards) {
+        profiles.last_pse = step.pse;
+        profiles.of_slope(std::exp(-inside), true);
+        return std::exp(limit(inside, towards, greatest, least, kTolerance, profile));
+    };
     const bool from_step = greatest - step.log_likelihood <= kAsLikely;
     if (from_step) {
-        const double inside = flattest_inside(profiles, least, step);
-        if (constant < least) ci.high = std::exp(limit(inside, kStep, greatest, least, kTolerance, profile));
+        const std::optional<double> inside = row_inside(profiles, least, step, std::log(10.0 * range)).flattest;
+        if (constant < least && inside) ci.high = limit_of_row(*inside, kStep);
         return ci;
     }
     const double u = has_sd ? -std::log(profiles.best.slope) : std::log(1e3 * range);
     profiles.start_at_best();
-    if (step.log_likelihood < least) ci.low = std::exp(limit(u, -kStep, greatest, least, kTolerance, profile));
+    if (step.log_likelihood < least) {
+        ci.low = std::exp(limit(u, -kStep, greatest, least, kTolerance, profile));
+        const std::optional<double> steepest = row_inside(profiles, least, step, std::log(*ci.low)).steepest;
+        if (steepest) ci.low = limit_of_row(*steepest, -kStep);
+    }
     profiles.start_at_best();
     if (constant < least) ci.high = std::exp(limit(u, kStep, greatest, least, kTolerance, profile));
     return ci;

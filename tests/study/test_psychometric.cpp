@@ -171,6 +171,21 @@ TEST_CASE("psychometric: the upper limit of sd of a step is that of the flattest
     CHECK(*fit.sd_ci.high == close_to(0.471).epsilon(0.005));
 }
 
+TEST_CASE("psychometric: the lower limit of sd is that of the steepest curve that the answers allow") {
+    // one simulated person of a study with pairs of 1, 1.1, 1.3, 1.6 and 2 times the stiffness; another program finds that the
+    // answers allow sd from 0.0294 to 0.117 and from 0.145 to 0.872
+    const double x[] = {-0.5108256238, -0.4700036292, -0.2876820725, -0.2623642645, -0.1053605157, -0.0953101798,
+                        0.0953101798,  0.1053605157,  0.2623642645,  0.2876820725,  0.4700036292,  0.5108256238};
+    const std::int64_t stiffer[] = {0, 0, 2, 1, 0, 0, 2, 0, 2, 2, 2, 2};
+    std::vector<LevelAnswers> levels;
+    for (std::size_t i = 0; i < std::size(x); ++i) levels.push_back({x[i], stiffer[i], 2});
+    const PsychometricFit fit = fit_psychometric(levels, {});
+    CHECK(fit.status == FitStatus::ok);
+    REQUIRE(fit.sd_ci.low);
+    CHECK(*fit.sd_ci.low == close_to(0.0294).epsilon(0.005));
+    CHECK(*fit.sd_ci.high == close_to(0.8719).epsilon(0.001));
+}
+
 TEST_CASE("psychometric: answers that do not rise have no estimate") {
     for (const std::vector<std::int64_t>& stiffer : {std::vector<std::int64_t>{40, 37, 31, 25, 16, 10, 3, 1},
                                                      {20, 20, 20, 20, 20, 20, 20, 20},
