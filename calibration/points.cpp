@@ -131,12 +131,15 @@ void check_running(const CalibrationRows& rows) {
 // Returns the greatest force that the rows below full level, given in order of level, can lead to at full level: by one and a
 // half times the slope of ln F over the last tenth of the range; three times the scatter, and 2 %. Infinite with too few rows.
 double most_at_full_N(const CalibrationRows& rows, const std::vector<std::size_t>& below, LevelRange range) {
-    constexpr double kFewest = 5.0;
+    constexpr double kFewest = 5.0, kLeastSpan = 0.05;  // presses of one level tell no slope
     const double from = range.highest - 0.1 * (range.highest - range.lowest);
+    double lowest = rows.level[below.back()];
     double n = 0.0, sl = 0.0, sf = 0.0, sll = 0.0, slf = 0.0, sff = 0.0;
     for (auto it = below.rbegin(); it != below.rend(); ++it) {
         const double level = rows.level[*it], force_N = rows.force_N[*it];
-        if (!(force_N > 0.0) || (level < from && n >= kFewest)) break;
+        const bool spread_out = rows.level[below.back()] - lowest >= kLeastSpan * (range.highest - range.lowest);
+        if (!(force_N > 0.0) || (level < from && n >= kFewest && spread_out)) break;
+        lowest = level;
         const double ln_F = std::log(force_N);
         n += 1.0;
         sl += level;

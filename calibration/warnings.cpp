@@ -84,7 +84,8 @@ void about_errors(const Calibration& calibration, const Words& words, std::vecto
                       percent(drift->per_repeat) + " from one to the next");
     }
     if (calibration.hysteresis && std::abs(calibration.hysteresis->median_relative) > 0.05) {
-        out.push_back("at one " + words.level + " pressing takes " + percent(calibration.hysteresis->median_relative) +
+        const double half = 0.5 * calibration.hysteresis->median_relative;  // of the curve between the two
+        out.push_back("at one " + words.level + " pressing takes " + percent((1.0 + half) / (1.0 - half) - 1.0) +
                       " more force than releasing: the curve lies between the two");
     }
     if (calibration.slips.count > 0) {

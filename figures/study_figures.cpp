@@ -32,7 +32,7 @@ percent(column_name) = 100 * column(column_name)
 
 unset key
 set ylabel "Sensitivity (%)"
-set title "Sensitivity by condition, with Wilson intervals at " . level . ", which ignore clustering" . subtitle
+set title "Sensitivity by condition, with Wilson intervals at " . level . sensitivity_wilson . subtitle
 set output "sensitivity." . kind
 set style fill solid 0.45 border lc rgb "#000000"
 set boxwidth 0.6
@@ -43,7 +43,7 @@ plot "sensitivity.tsv" every ::0::(rows - 1) using 0:(percent("share")) with box
      "" every ::0::(rows - 1) using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
 
 set ylabel "Positive predictive value (%)"
-set title "Positive predictive value by condition, with Wilson intervals at " . level . ", which ignore clustering" . subtitle
+set title "Positive predictive value by condition, with Wilson intervals at " . level . ppv_wilson . subtitle
 set output "ppv." . kind
 plot "ppv.tsv" every ::0::(rows - 1) using 0:(percent("share")) with boxes lc rgb "#009E73", \
      "" every ::0::(rows - 1) using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
@@ -53,7 +53,7 @@ plot "ppv.tsv" every ::0::(rows - 1) using 0:(percent("share")) with boxes lc rg
 constexpr const char* kNodules =
     R"gp(
 set ylabel "Sensitivity (%)"
-set title "Sensitivity by nodule, with Wilson intervals at " . level . ", which ignore clustering" . subtitle
+set title "Sensitivity by nodule, with Wilson intervals at " . level . nodules_wilson . subtitle
 set output "nodules." . kind
 set key outside right top title "nodule" noenhanced
 set style fill pattern border lc rgb "#000000"
@@ -82,12 +82,25 @@ std::string tic_label(const std::string& text) {
     return out;
 }
 
+// What a title says of the intervals of these shares.
+std::string wilson_title(const std::vector<study::Share>& shares) {
+    const auto n =
+        std::count_if(shares.begin(), shares.end(), [](const study::Share& share) { return share.one_each; });
+    if (n == 0) return "\", which ignore clustering\"";
+    const bool all = static_cast<std::size_t>(n) == shares.size();
+    return all ? "\" over participants\"" : "\", some of which ignore clustering\"";
+}
+
 std::string script_of(const study::Report& report) {
     // rows of tables are known by their number, since gnuplot reads names with a backslash as others
     std::vector<std::string> every, conditions, labels, nodules, titles, condition_of, nodule_of;
+    std::vector<study::Share> se, ppv, se_of_nodule;
     for (const study::ConditionResult& condition : report.conditions) {
         every.push_back(tic_label(condition.name));
+        if (condition.se) se.push_back(*condition.se);
+        if (condition.ppv) ppv.push_back(*condition.ppv);
         for (const study::NoduleResult& nodule : condition.nodules) {
+            se_of_nodule.push_back(nodule.se);
             condition_of.push_back(std::to_string(1 + study::index_of(condition.name, conditions)));
             nodule_of.push_back(std::to_string(1 + study::index_of(nodule.nodule, nodules)));
         }
@@ -98,6 +111,8 @@ std::string script_of(const study::Report& report) {
     std::string out =
         "rows = " + std::to_string(every.size()) + "\nnodule_rows = " + std::to_string(nodule_of.size()) + "\n";
     out += "level = \"" + files::short_number(100.0 * report.options.bootstrap.level) + " %\"\n";
+    out += "sensitivity_wilson = " + wilson_title(se) + "\nppv_wilson = " + wilson_title(ppv) +
+           "\nnodules_wilson = " + wilson_title(se_of_nodule) + "\n";
     out += "subtitle = " + std::string(report.simulated ? R"("\n{/*0.8 SIMULATED participants}")" : "''") + "\n";
     out += array_of("every_condition", every) + kScript;
     if (!nodules.empty())

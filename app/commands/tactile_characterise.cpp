@@ -139,7 +139,7 @@ std::vector<devices::PressRow> path_of(const CharacteriseOptions& options, doubl
 }
 
 std::string table_name(double stiffness_N_per_m) {
-    return "stiffness-" + files::number_text(1e-3 * stiffness_N_per_m) + "-N-per-mm.tsv";
+    return "stiffness-" + files::number_text(stiffness_N_per_m / 1e3) + "-N-per-mm.tsv";
 }
 
 void write_table(const tactile::StiffnessRun& run, const std::filesystem::path& folder) {

@@ -550,7 +550,8 @@ inline constexpr const char* kAtPlace = "  at {}, {} mm";
 
 // trial: its messages
 inline constexpr const char* kOtherWays =
-    "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
+    "Other ways to press: the mouse (hold its button; the wheel sets how hard) and the keys (arrows move, Space "
+    "presses).";
 inline constexpr const char* kDisconnected = "{} was disconnected.";
 inline constexpr const char* kConnected = "{} is connected.";
 inline constexpr const char* kHeldPress = "The {} presses harder the longer it is held.";
@@ -764,6 +765,7 @@ inline constexpr const char* pageTheyAreHere = "The trials are on this tablet.";
 inline constexpr const char* pageTheyAreAtDesk = "The trials are at the desk.";
 inline constexpr const char* pageSomeAreHere =
     "Some are on this tablet, the others at the desk or in an exported file.";
+inline constexpr const char* pageAnswersAreHere = "Answers are still on this tablet.";
 inline constexpr const char* pageNoneIsHere = "The trials are at the desk or in an exported file.";
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
 inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";

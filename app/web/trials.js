@@ -486,14 +486,15 @@ const palpaTrials = (() => {
         return (trial.finished && !trial.endedEarly ? palpaWords.waiting : palpaWords.interruptedWaiting) + (trial.exported ? palpaWords.exported : '');
     };
 
-    // Where the trials of one participant are, for people.
+    // Where the trials of one participant are, for people; and whether answers, or a withdrawal, wait here alone.
     const where = (code) => {
         const all = known().filter((t) => codeOf(t.name) === code && isOver(t));
         const sent = all.some((t) => t.sent);
         const here = all.some((t) => !t.sent && !unsaved.has(t.name));
         const exported = deleted().includes(code) || onlyInFile().some((name) => codeOf(name) === code) || all.some((t) => !t.sent && unsaved.has(t.name)); // and nowhere else
         if (here) return sent || exported ? palpaWords.someAreHere : palpaWords.theyAreHere;
-        return exported ? palpaWords.noneIsHere : sent ? palpaWords.theyAreAtDesk : '';
+        const answers = known().some((t) => !t.sent && !t.exported && t.name.startsWith(`sub-${code}_task-answers_`));
+        return [exported ? palpaWords.noneIsHere : sent ? palpaWords.theyAreAtDesk : '', answers ? palpaWords.answersAreHere : ''].filter(Boolean).join(' ');
     };
 
     const state = () => {

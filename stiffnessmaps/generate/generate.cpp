@@ -163,7 +163,8 @@ std::string error_estimate(const GenerateOptions& options, const MapTask& task, 
             text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) +
                     " % of it where it is largest";
         return text + " (" + std::to_string(found.points) + " points against meshes " + files::short_number(kCoarser) +
-               " times coarser); up to twice that on meshes so coarse that a contact spans one or two cells.";
+               " times coarser); up to twice that on meshes so coarse that a contact spans one or two cells, and up to "
+               "three times over stiff nodules, whose surfaces are as ragged as their cells.";
     } catch (const files::InputError&) {
         return " Error of the meshes: not estimated, coarser ones cannot be made.";
     } catch (const mechanics::SolverError&) {

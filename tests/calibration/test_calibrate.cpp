@@ -197,7 +197,8 @@ TEST_CASE("calibrate: the loop between pressing and releasing is reported, by ph
     const Calibration by_phase = calibrate(rows, {});
     REQUIRE(by_phase.hysteresis);
     CHECK(by_phase.hysteresis->median_relative == close_to(0.2 / 1.1).epsilon(0.02));
-    CHECK(any_with(by_phase.warnings, "more force than releasing"));
+    CHECK((any_with(by_phase.warnings, "pressing takes 20 % more force than releasing") ||
+           any_with(by_phase.warnings, "pressing takes 19.") || any_with(by_phase.warnings, "pressing takes 20.")));
     CalibrateOptions keep;
     keep.remove_lag = false;
     const Calibration by_time = calibrate(waves(0.0, 0.2, random), keep);

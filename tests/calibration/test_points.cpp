@@ -66,6 +66,20 @@ TEST_CASE("points: full level that begins between two points far apart is not fi
     const Calibration closed = with(2.51);
     CHECK(std::isnan(closed.ends.before_saturation_N));
     CHECK(value_N(closed.profile.curve, 1.0) == close_to(2.51).epsilon(0.005));
+    // eight presses of the very same levels, with one level in the highest tenth
+    CalibrationRows alike;
+    for (int press = 0; press < 8; ++press) {
+        for (int k = 1; k <= 13; ++k) {
+            alike.level.push_back(k < 13 ? 0.0816 * k : 1.0);
+            alike.force_N.push_back((k < 13 ? 0.06 * std::pow(40.0, alike.level.back()) : 3.0) *
+                                    (1.0 + 1e-3 * (press % 3)));
+            alike.line.push_back(static_cast<std::size_t>(13 * press + k + 1));
+            alike.repeat.push_back(press + 1);
+        }
+    }
+    const Calibration repeated = calibrate(alike, {});
+    CHECK(value_N(repeated.profile.curve, 1.0) == close_to(2.4).epsilon(0.02));  // 3.0 before
+    CHECK_FALSE(std::isnan(repeated.ends.before_saturation_N));
     // a steep end, of which too little is known: the row at full level is all there is
     CalibrationRows steep;
     for (int k = 0; k <= 10; ++k) {

@@ -168,6 +168,25 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     assert.equal(fs.readFileSync(path.join(study, 'protocol.json'), 'utf8'), fs.readFileSync(path.join(where.assets, 'protocols/short.json'), 'utf8'));
 }));
 
+test('ratings that wait on the tablet: the last screen says so until they are at the desk', options, () => withDesk(async (browser, desk, where) => {
+    const {page} = browser;
+    await open(browser, desk.url, '?protocol=rated&participant=8');
+    await runTrial(browser, 700, 300);
+    await at(page, 'ratings');
+    await until('the trial is at the desk', async () => (await stored(page)).some((trial) => trial.sent && trial.name.includes('palpation')));
+    await page.route('**/api/logs/**', (route) => route.abort());
+    await tap(browser, 375, 195);
+    await key(page, 'Enter');
+    await at(page, 'done');
+    const said = () => page.evaluate(() => palpaTrials.where('8'));
+    await until('the rating waits', async () => (await stored(page)).some((trial) => !trial.sent && trial.name.includes('answers')));
+    assert.equal(await said(), 'The trials are at the desk. Answers are still on this tablet.');
+    await page.unroute('**/api/logs/**');
+    await page.evaluate(() => palpaTrials.send());
+    await until('all at the desk', async () => (await stored(page)).every((trial) => trial.sent));
+    assert.equal(await said(), 'The trials are at the desk.');
+}, {protocols: {rated: {...tiny, ratings: protocol.ratings}}}));
+
 // A key and a certificate of their own, as scripts/run --tablet makes them.
 const certificate = ({folder}) => {
     const [key, cert] = ['key.pem', 'cert.pem'].map((name) => path.join(folder, name));

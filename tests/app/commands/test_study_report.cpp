@@ -116,6 +116,10 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     }
     CHECK(fs::exists(folder / "report/mixed_model.R") == (json["mixed_logistic"]["status"] == "computed"));
     CHECK(contains(read_text(folder / "report/report.md"), "0.5 is not chance"));
+    // everybody met four nodules, each of them once
+    const std::string figures = read_text(folder / "report/figures.gp");
+    CHECK(contains(figures, "sensitivity_wilson = \", which ignore clustering\""));
+    CHECK(contains(figures, "nodules_wilson = \" over participants\""));
     refused(marks + " --rating-scale 1 2", "a rating from 1 to 2, the scale");
     refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
     refused("analyse " PALPA_SOURCE_DIR "/assets/counts/paper.tsv --rating-scale 1 5", "which holds no ratings");

@@ -92,6 +92,7 @@ TEST_CASE("generate: one process, two, parts that are joined, all give the same 
     CHECK(contains(map.source.how, "red, above 25 %, from 0.75 mm"));
     CHECK(contains(map.source.how, "Estimated error of the meshes: "));
     CHECK(contains(map.source.how, "times coarser"));
+    CHECK(contains(map.source.how, "up to three times over stiff nodules"));
     CHECK_FALSE(fs::exists(bench / "one.map.estimate"));
     const auto at = [&](const std::vector<float>& array, std::size_t i) {
         return array[map.n_cells() + 4 * map.n_x + i];
