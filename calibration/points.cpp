@@ -132,6 +132,7 @@ void check_running(const CalibrationRows& rows) {
 // half times the slope of ln F over the last tenth of the range; three times the scatter, and 2 %. Infinite with too few rows.
 double most_at_full_N(const CalibrationRows& rows, const std::vector<std::size_t>& below, LevelRange range) {
     constexpr double kFewest = 5.0, kLeastSpan = 0.05;  // presses of one level tell no slope
+    if (static_cast<double>(below.size()) < kFewest) return kInfinity;
     const double from = range.highest - 0.1 * (range.highest - range.lowest);
     double lowest = rows.level[below.back()];
     double n = 0.0, sl = 0.0, sf = 0.0, sll = 0.0, slf = 0.0, sff = 0.0;

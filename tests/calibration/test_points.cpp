@@ -80,6 +80,14 @@ TEST_CASE("points: full level that begins between two points far apart is not fi
     const Calibration repeated = calibrate(alike, {});
     CHECK(value_N(repeated.profile.curve, 1.0) == close_to(2.4).epsilon(0.02));  // 3.0 before
     CHECK_FALSE(std::isnan(repeated.ends.before_saturation_N));
+    // nothing between the ends
+    CalibrationRows ends_alone;
+    for (int k = 0; k < 8; ++k) {
+        ends_alone.level.push_back(k < 4 ? 0.0 : 1.0);
+        ends_alone.force_N.push_back(0.1 + 0.3 * k);
+        ends_alone.line.push_back(static_cast<std::size_t>(k + 2));
+    }
+    CHECK(message_of([&] { calibrate(ends_alone, {}); }) != "");
     // a steep end, of which too little is known: the row at full level is all there is
     CalibrationRows steep;
     for (int k = 0; k <= 10; ++k) {
