@@ -133,6 +133,24 @@ std::size_t with_something(std::span<const Contribution> people) {
         std::count_if(people.begin(), people.end(), [](const Contribution& one) { return one.n > 0; }));
 }
 
+// Says whether the permutation of pooled counts keeps its level (people_test.h).
+bool permutation_fits(std::span<const Contribution> a, std::span<const Contribution> b) {
+    constexpr std::int64_t kFewestOfRarer = 5;
+    constexpr double kUneven = 1.25;
+    std::int64_t k = 0;
+    double n[2] = {0.0, 0.0};
+    for (const Contribution& one : a) {
+        k += one.k;
+        n[0] += static_cast<double>(one.n);
+    }
+    for (const Contribution& one : b) {
+        k += one.k;
+        n[1] += static_cast<double>(one.n);
+    }
+    const std::int64_t rarer = std::min(k, static_cast<std::int64_t>(n[0] + n[1]) - k);
+    return rarer >= kFewestOfRarer || std::max(n[0], n[1]) <= kUneven * std::min(n[0], n[1]);
+}
+
 void compare_within(std::span<const Contribution> a, std::span<const Contribution> b, Average average,
                     const PeopleTestOptions& options, PeopleTest& test) {
     const std::size_t least = std::min({a.size(), with_something(a), with_something(b)});
@@ -147,7 +165,9 @@ void compare_within(std::span<const Contribution> a, std::span<const Contributio
         permuted.push_back(of_a.permuted[i] - of_b.permuted[i]);
     }
     student(residuals, "differences", options.level, test);
-    if (options.permutation) take_permutation(sign_permutation(permuted, options.seed), test);
+    test.permutation_unfit = average == Average::pooled && !permutation_fits(a, b);
+    if (options.permutation && !test.permutation_unfit)
+        take_permutation(sign_permutation(permuted, options.seed), test);
 }
 
 void compare_between(std::span<const Contribution> a, std::span<const Contribution> b, Average average,
@@ -159,7 +179,9 @@ void compare_between(std::span<const Contribution> a, std::span<const Contributi
     const Side of_a = side_of(a, average, pooled_share(all)), of_b = side_of(b, average, pooled_share(all));
     test.difference = of_a.share - of_b.share;
     welch(of_a.residuals, of_b.residuals, options.level, test);
-    if (options.permutation) take_permutation(group_permutation(of_a.permuted, of_b.permuted, options.seed), test);
+    test.permutation_unfit = average == Average::pooled && !permutation_fits(a, b);
+    if (options.permutation && !test.permutation_unfit)
+        take_permutation(group_permutation(of_a.permuted, of_b.permuted, options.seed), test);
 }
 
 std::vector<double> differences(const People& a, const People& b) {

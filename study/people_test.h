@@ -32,7 +32,8 @@ struct PeopleTest {
     double p = 1.0;              // two-sided, of t
     double p_permutation = 1.0;  // two-sided, of signs or of groups (study/permutation.h)
     bool permutation_exact = true;
-    std::string status;  // empty, or "cannot be computed, because ..."
+    bool permutation_unfit = false;  // pooled counts whose permutation would not keep its level: p_permutation is NaN
+    std::string status;              // empty, or "cannot be computed, because ..."
 };
 
 struct PeopleTestOptions {
@@ -47,7 +48,10 @@ struct PeopleTestOptions {
 //
 // With Average::pooled the standard error is the jackknife's over people, of the difference of the ratios
 // sum k / sum n (Efron & Tibshirani, An Introduction to the Bootstrap, 1993, section 11.5), and what is permuted is
-// k_i - r n_i with the ratio r of both conditions together, which no exchange changes.
+// k_i - r n_i with the ratio r of both conditions together, which no exchange changes. An exchange also exchanges how many
+// there are to count: where one condition has 1.25 times as many as the other, and fewer than five in all are of the rarer
+// kind (false marks among right ones), that alone decides, and there is no permutation. Of null data drawn for 8 to 40 people
+// with 1 to 6 marks each it rejected 9 to 24 % at 0.05 with one or two false marks, up to 6 % with five and more.
 PeopleTest compare_people(const People& a, const People& b, Average average, const PeopleTestOptions& options);
 
 // Compares the mean of the people's shares with `chance`: Student's t, and the permutation of signs of k_i - chance n_i,

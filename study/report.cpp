@@ -224,10 +224,22 @@ void note_uneven_marks(Report& report) {
         if (fewest == nullptr || marks(one) < marks(*fewest)) fewest = &one;
     }
     if (most == nullptr || marks(*most) <= kUneven * marks(*fewest)) return;
-    report.notes.push_back("WARNING: " + most->name + " has " + std::to_string(marks(*most)) +
-                           " marks (hits and false ones, each nodule once), " + fewest->name + " " +
-                           std::to_string(marks(*fewest)) +
-                           ". With so uneven numbers the t test of PPV does not keep its level; its permutation does");
+    report.notes.push_back(
+        "WARNING: " + most->name + " has " + std::to_string(marks(*most)) +
+        " marks (hits and false ones, each nodule once), " + fewest->name + " " + std::to_string(marks(*fewest)) +
+        ". With so uneven numbers the t test of PPV does not keep its level; its permutation does, from five false "
+        "marks on");
+}
+
+// Says why tests of PPV have no permutation.
+void note_unfit_permutations(Report& report) {
+    const auto unfit = [](const auto& pair) { return pair.people.permutation_unfit; };
+    const auto any_unfit = [&](const auto& pairs) { return std::any_of(pairs.begin(), pairs.end(), unfit); };
+    if (!any_unfit(report.ppv_pairs) && !any_unfit(report.group_comparisons)) return;
+    report.notes.push_back(
+        "tests of PPV without a permutation: one side has more than 1.25 times the marks of the other, and fewer than "
+        "five "
+        "of all are false (or right); an exchange of the sides would say which has more marks");
 }
 
 // Says how many hits and misses the tables of nodules leave out.
@@ -367,6 +379,7 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     note_few_people(report);
     note_few_resamples(report);
     note_uneven_marks(report);
+    note_unfit_permutations(report);
     note_unnamed_nodules(seen, report);
     return report;
 }

@@ -186,3 +186,31 @@ TEST_CASE("people test: with three times the marks under one condition, signs of
     CHECK(signs < 0.05 * computed);
     CHECK(t > 0.1 * computed);  // what the report warns of
 }
+
+TEST_CASE("people test: a single false mark among uneven numbers of marks is not permuted, five are") {
+    const auto test_of = [](int false_marks, std::int64_t marks_of_b, bool within) {
+        People a, b;
+        for (int i = 0; i < 12; ++i) {
+            const std::int64_t right = i < false_marks ? 1 : 2;
+            a.emplace_back(Contribution{right, 2});
+            b.emplace_back(Contribution{marks_of_b, marks_of_b});
+        }
+        if (!within) {
+            a.resize(24);
+            b.insert(b.begin(), 12, std::nullopt);
+        }
+        return compare_people(a, b, Average::pooled, {});
+    };
+    for (const bool within : {true, false}) {
+        const PeopleTest one =
+            test_of(1, 5, within);  // 23 of 24 against 60 of 60: p 0.0005 before, where chance gives 0.29
+        CHECK(one.design == (within ? Design::within : Design::between));
+        CHECK(one.permutation_unfit);
+        CHECK(std::isnan(one.p_permutation));
+        CHECK(one.p > 0.3);
+        CHECK_FALSE(test_of(1, 2, within).permutation_unfit);
+        const PeopleTest five = test_of(5, 5, within);
+        CHECK_FALSE(five.permutation_unfit);
+        CHECK(five.p_permutation < 0.05);
+    }
+}
