@@ -35,14 +35,16 @@ struct Side {
     std::vector<double> permuted;
 };
 
-double pooled_share(std::span<const Contribution> people) {
-    double k = 0.0, n = 0.0;
+Contribution total_of(std::span<const Contribution> people) {
+    Contribution total;
     for (const Contribution& one : people) {
-        k += static_cast<double>(one.k);
-        n += static_cast<double>(one.n);
+        total.k += one.k;
+        total.n += one.n;
     }
-    return k / n;
+    return total;
 }
+
+double pooled_share(std::span<const Contribution> people) { return own_share(total_of(people)); }
 
 Side side_of(std::span<const Contribution> people, Average average, double share_of_both) {
     Side side;
@@ -52,11 +54,8 @@ Side side_of(std::span<const Contribution> people, Average average, double share
         for (const double value : side.permuted) side.residuals.push_back(value - side.share);
         return side;
     }
-    double k = 0.0, n = 0.0;
-    for (const Contribution& one : people) {
-        k += static_cast<double>(one.k);
-        n += static_cast<double>(one.n);
-    }
+    const Contribution total = total_of(people);
+    const auto k = static_cast<double>(total.k), n = static_cast<double>(total.n);
     side.share = k / n;
     const auto m = static_cast<double>(people.size());
     for (const Contribution& one : people) {
@@ -137,18 +136,10 @@ std::size_t with_something(std::span<const Contribution> people) {
 bool permutation_fits(std::span<const Contribution> a, std::span<const Contribution> b) {
     constexpr std::int64_t kFewestOfRarer = 5;
     constexpr double kUneven = 1.25;
-    std::int64_t k = 0;
-    double n[2] = {0.0, 0.0};
-    for (const Contribution& one : a) {
-        k += one.k;
-        n[0] += static_cast<double>(one.n);
-    }
-    for (const Contribution& one : b) {
-        k += one.k;
-        n[1] += static_cast<double>(one.n);
-    }
-    const std::int64_t rarer = std::min(k, static_cast<std::int64_t>(n[0] + n[1]) - k);
-    return rarer >= kFewestOfRarer || std::max(n[0], n[1]) <= kUneven * std::min(n[0], n[1]);
+    const Contribution of_a = total_of(a), of_b = total_of(b);
+    const std::int64_t right = of_a.k + of_b.k, wrong = of_a.n + of_b.n - right;
+    const auto [fewer, more] = std::minmax({static_cast<double>(of_a.n), static_cast<double>(of_b.n)});
+    return std::min(right, wrong) >= kFewestOfRarer || more <= kUneven * fewer;
 }
 
 void compare_within(std::span<const Contribution> a, std::span<const Contribution> b, Average average,
@@ -165,7 +156,7 @@ void compare_within(std::span<const Contribution> a, std::span<const Contributio
         permuted.push_back(of_a.permuted[i] - of_b.permuted[i]);
     }
     student(residuals, "differences", options.level, test);
-    test.permutation_unfit = average == Average::pooled && !permutation_fits(a, b);
+    test.permutation_unfit = options.permutation && average == Average::pooled && !permutation_fits(a, b);
     if (options.permutation && !test.permutation_unfit)
         take_permutation(sign_permutation(permuted, options.seed), test);
 }
@@ -179,7 +170,7 @@ void compare_between(std::span<const Contribution> a, std::span<const Contributi
     const Side of_a = side_of(a, average, pooled_share(all)), of_b = side_of(b, average, pooled_share(all));
     test.difference = of_a.share - of_b.share;
     welch(of_a.residuals, of_b.residuals, options.level, test);
-    test.permutation_unfit = average == Average::pooled && !permutation_fits(a, b);
+    test.permutation_unfit = options.permutation && average == Average::pooled && !permutation_fits(a, b);
     if (options.permutation && !test.permutation_unfit)
         take_permutation(group_permutation(of_a.permuted, of_b.permuted, options.seed), test);
 }

@@ -51,7 +51,7 @@ struct PeopleTestOptions {
 // k_i - r n_i with the ratio r of both conditions together, which no exchange changes. An exchange also exchanges how many
 // there are to count: where one condition has 1.25 times as many as the other, and fewer than five in all are of the rarer
 // kind (false marks among right ones), that alone decides, and there is no permutation. Of null data drawn for 8 to 40 people
-// with 1 to 6 marks each it rejected 9 to 24 % at 0.05 with one or two false marks, up to 6 % with five and more.
+// with 1 to 6 marks each it rejected 4 to 24 % at 0.05 with one or two false marks, about 5 % at most with five and more.
 PeopleTest compare_people(const People& a, const People& b, Average average, const PeopleTestOptions& options);
 
 // Compares the mean of the people's shares with `chance`: Student's t, and the permutation of signs of k_i - chance n_i,

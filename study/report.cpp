@@ -238,8 +238,7 @@ void note_unfit_permutations(Report& report) {
     if (!any_unfit(report.ppv_pairs) && !any_unfit(report.group_comparisons)) return;
     report.notes.push_back(
         "tests of PPV without a permutation: one side has more than 1.25 times the marks of the other, and fewer than "
-        "five "
-        "of all are false (or right); an exchange of the sides would say which has more marks");
+        "five of all are false (or right); an exchange of the sides would say which has more marks");
 }
 
 // Says how many hits and misses the tables of nodules leave out.

@@ -171,6 +171,12 @@ TEST_CASE("report: more than twice the marks under one condition are warned of")
     CHECK_FALSE(warns());  // six and three
     seen.rows.push_back({0, 0, -1, 1, 1, 0, 0});
     CHECK(warns());
+    const auto says_unfit = [&] {
+        return contains(report_markdown(make_report(seen, {})), "tests of PPV without a permutation: one side has");
+    };
+    CHECK(says_unfit());
+    seen.rows.push_back({1, 0, -1, 1, 0, 0, 6});  // six false marks
+    CHECK_FALSE(says_unfit());
 }
 
 TEST_CASE("report: a single trial has no standard deviation") {
