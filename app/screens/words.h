@@ -683,6 +683,7 @@ inline constexpr const char* kComesNext = "Next is trial {}. Continue when you a
 
 // the page around the program, in the browser: cmake/page_words.py hands these to its scripts
 inline constexpr const char* pageLoading = "Loading Palpa";
+inline constexpr const char* pageLoadingShare = "Loading Palpa: {} %";
 inline constexpr const char* pageCloseStudy = "Close the study";
 inline constexpr const char* pageYourAnswer = "Your answer";
 inline constexpr const char* pageTrials = "Trials on this tablet";
@@ -764,7 +765,7 @@ inline constexpr const char* pageStored = "{} trial(s) stored on this tablet.";
 inline constexpr const char* pageTheyAreHere = "The trials are on this tablet.";
 inline constexpr const char* pageTheyAreAtDesk = "The trials are at the desk.";
 inline constexpr const char* pageSomeAreHere =
-    "Some are on this tablet, the others at the desk or in an exported file.";
+    "Some trials are on this tablet, the others at the desk or in an exported file.";
 inline constexpr const char* pageAnswersAreHere = "Answers are still on this tablet.";
 inline constexpr const char* pageNoneIsHere = "The trials are at the desk or in an exported file.";
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";

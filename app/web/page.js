@@ -8,7 +8,9 @@ const palpaPage = (() => {
     for (const element of document.querySelectorAll('[data-word]')) element.textContent = palpaWords[element.dataset.word];
     for (const element of document.querySelectorAll('[data-label]')) element.setAttribute('aria-label', palpaWords[element.dataset.label]);
 
+    let failed = false;
     const fail = (text) => {
+        failed = true;
         at('message').hidden = false;
         at('message-text').textContent = palpaFilled(palpaWords.stopped, text);
     };
@@ -23,6 +25,16 @@ const palpaPage = (() => {
     at('leave').addEventListener('click', () => palpaStudies.leave());
 
     const started = () => { at('message').hidden = true; };
+
+    // How much of the program and its files has come, in steps of 5 %: over a slow network they take a minute.
+    const loaded = {program: 0, data: 0};
+    const loading = (what, bytes) => {
+        loaded[what] = bytes;
+        const percent = Math.floor(20 * (loaded.program + loaded.data) / at('message-text').dataset.bytes) * 5;
+        const text = palpaFilled(palpaWords.loadingShare, percent);
+        if (failed || at('message').hidden || percent === 0 || percent >= 100 || at('message-text').textContent === text) return;
+        at('message-text').textContent = text;
+    };
 
     const show = () => {
         const state = palpaTrials.state();
@@ -132,15 +144,42 @@ const palpaPage = (() => {
     if ('serviceWorker' in navigator) {
         navigator.serviceWorker.register('service_worker.js').catch(() => {}); // then it needs the desk at every start
     }
-    return {fail, refuse, started, openTrials, openStudies, type, typeEnd};
+    return {fail, loading, refuse, started, openTrials, openStudies, type, typeEnd};
 })();
+
+// The program is compiled while it comes; on a first visit, a copy of what comes is counted.
+const palpaProgram = async (imports) => {
+    const response = await fetch(`${palpaFolder}palpa.wasm`);
+    if (!response.ok) throw new Error(`${response.status}`);
+    const count = async (reader) => {
+        for (let bytes = 0;;) {
+            const {done, value} = await reader.read();
+            if (done) return;
+            palpaPage.loading('program', bytes += value.length);
+        }
+    };
+    const kept = 'serviceWorker' in navigator && navigator.serviceWorker.controller;
+    if (!kept) count(response.clone().body.getReader()).catch(() => {}); // what breaks off fails below
+    return WebAssembly.instantiateStreaming(response, imports);
+};
 
 var Module = {
     canvas: document.getElementById('canvas'),
     locateFile: (file) => palpaFolder + file,
     print: (text) => console.log(text),
     printErr: (text) => console.warn(text),
-    onAbort: (what) => palpaPage.fail(/fetching of the wasm/.test(what) ? palpaWords.notLoaded : String(what)),
+    instantiateWasm: (imports, done) => {
+        palpaProgram(imports).then(({instance, module}) => done(instance, module), (error) => {
+            console.warn(error);
+            palpaPage.fail(palpaWords.notLoaded);
+        });
+        return {};
+    },
+    setStatus: (text) => { // what the loader of the files says, in its own words
+        const [, bytes] = /\((\d+)\/\d+\)/.exec(text) || [];
+        if (bytes) palpaPage.loading('data', Number(bytes));
+    },
+    onAbort: (what) => palpaPage.fail(String(what)),
     // trials of earlier days are known before the first one of today
     preRun: [() => {
         addRunDependency('trials');

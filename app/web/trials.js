@@ -508,9 +508,9 @@ const palpaTrials = (() => {
     };
 
     const noteText = () => {
-        const {waiting, paired} = state();
+        const waiting = toSend().filter((t) => !unsaved.has(t.name)).length; // the others are exported
         if (inDanger() > 0) return palpaFilled(palpaWords.unsaved, inDanger());
-        return waiting === 0 ? palpaWords.allSafe : palpaFilled(paired ? palpaWords.storedUnsent : palpaWords.stored, waiting);
+        return waiting === 0 ? palpaWords.allSafe : palpaFilled(maySend() ? palpaWords.storedUnsent : palpaWords.stored, waiting);
     };
 
     return {

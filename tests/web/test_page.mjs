@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
-import {frames, pen, report, root, rows, started, touch, withPage} from './browser.mjs';
+import {frames, openBrowser, openDesk, pen, report, root, rows, started, touch, withPage} from './browser.mjs';
 
 // What a person sees, pixel by pixel, as 'red,green,blue'.
 const coloursOf = async (page, clip) => page.evaluate(async (png) => {
@@ -25,6 +25,54 @@ test('the first visit loads less than 3 MB', () => withPage({}, async (browser, 
     console.log(`${bytes} bytes until it runs, not compressed`);
     assert.ok(bytes > 1e6 && bytes < 3e6, String(bytes));
 }));
+
+test('over a slow network the page says how much has come', async () => {
+    const desk = await openDesk();
+    const browser = await openBrowser();
+    try {
+        const {page, devtools} = browser;
+        await devtools.send('Network.enable');
+        await devtools.send('Network.emulateNetworkConditions', {offline: false, latency: 20, downloadThroughput: 1e6, uploadThroughput: 1e6});
+        await page.addInitScript(() => {
+            window.shares = [];
+            addEventListener('DOMContentLoaded', () => {
+                const text = document.getElementById('message-text');
+                new MutationObserver(() => shares.push(text.textContent)).observe(text, {childList: true});
+            });
+        });
+        await page.goto(desk.url);
+        await started(page);
+        const shares = (await page.evaluate(() => shares)).map((text) => Number(/^Loading Palpa: (\d+) %$/.exec(text)[1]));
+        console.log(shares.join(' '));
+        assert.ok(shares.length >= 5 && shares.every((share, i) => share > (shares[i - 1] ?? 0) && share < 100), shares.join());
+    } finally {
+        await browser.close();
+        await desk.close();
+    }
+});
+
+test('a file that does not come: the page says so, whatever else is still coming', async () => {
+    const desk = await openDesk();
+    const browser = await openBrowser();
+    try {
+        const {page} = browser;
+        for (const [file, said] of [['palpa.wasm', /cannot be loaded/], ['palpa.data', /palpa\.data/], ['palpa.js', /cannot be loaded/]]) {
+            await page.route(`**/${file}`, (route) => route.abort());
+            await page.goto(desk.url);
+            await page.waitForFunction(() => /^Palpa has stopped/.test(document.getElementById('message-text').textContent));
+            await page.waitForTimeout(1000);
+            assert.match(await page.textContent('#message-text'), said);
+            await page.unroute(`**/${file}`);
+            await page.evaluate(async () => {
+                for (const registration of await navigator.serviceWorker.getRegistrations()) await registration.unregister();
+                for (const name of await caches.keys()) await caches.delete(name);
+            });
+        }
+    } finally {
+        await browser.close();
+        await desk.close();
+    }
+});
 
 test('settings outlive a reload', () => withPage({}, async (browser) => {
     const {page} = browser;

@@ -133,7 +133,7 @@ test('exported trials are deleted, those at the desk keep their names and count;
     const words = () => page.evaluate(() => palpaTrials.state().trials.map((t) => t.words));
     assert.ok((await words()).includes('interrupted, waiting'), String(await words()));
     const where = () => page.evaluate(() => palpaTrials.where(palpaTrials.participant()));
-    assert.match(await where(), /^Some are on this tablet/);
+    assert.match(await where(), /^Some trials are on this tablet/);
     await page.evaluate(() => palpaTrials.open());
     await page.click('#export');
     await until('exported', async () => (await words()).includes('interrupted, waiting, exported'));
@@ -161,6 +161,7 @@ test('a full storage is said at once, the next trial waits, export saves it and 
     await (await saved).saveAs(file);
     await page.click('#close-trials');
     await until('the next trial', async () => (await report(page)).trials.length === 2);
+    assert.match(await page.evaluate(() => palpaTrials.note()), /^All trials are at the desk or exported/); // none is stored here
     const {palpa_bundle: version, files} = JSON.parse(fs.readFileSync(file));
     assert.equal(version, 1);
     assert.equal(files.length, 8);
