@@ -109,6 +109,17 @@ Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, Lev
                            "points that determine it (more levels, or another model)");
 }
 
+// Repeats that hold different levels can be compared only through a curve that fits: the best one, whichever was asked for.
+std::optional<Drift> drift_between_repeats(const Calibration& calibration, const CalibrateOptions& options,
+                                           double highest_level) {
+    const FitPoints& points = calibration.points;
+    if (!calibration.by_repeats) return drift_of(points, calibration.fitted_N, false);
+    if (!options.model) return drift_of(points, calibration.chosen.predicted_N, true);
+    const Candidate best =
+        choose(points, candidates(points, std::nullopt, options.error, options.robust, highest_level), options.error);
+    return drift_of(points, best.predicted_N.size() > 0 ? best.predicted_N : calibration.chosen.predicted_N, true);
+}
+
 // A press that holds a reading or two is no repeat of the others: what differs between such presses is the level. Forgets
 // repeats if half of them span less than a quarter of the levels.
 void forget_short_repeats(CalibrationRows& rows) {
@@ -178,7 +189,7 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
                                   options.bootstrap_fits, options.seed);
     }
     out.hysteresis = hysteresis_of(rows, range);
-    out.drift = drift_of(out.points, out.by_repeats ? out.chosen.predicted_N : out.fitted_N, out.by_repeats);
+    out.drift = drift_between_repeats(out, options, range.highest);
     out.levels = levels_of(out.points, range);
     out.slips = slips_in(out);
     out.warnings = warnings_of(out, rows.notes);

@@ -254,6 +254,23 @@ TEST_CASE("calibrate: repeats that drift are told") {
     CHECK(any_with(apart.warnings, "repeats differ by"));
 }
 
+TEST_CASE("calibrate: repeats at levels of their own do not differ by the misfit of the model that is asked for") {
+    CalibrationRows rows;  // one press after the other from the lightest levels to the strongest
+    for (int r = 0; r < 4; ++r) {
+        for (int i = 0; i < 12; ++i) {
+            const double level = 0.08 + 0.05 * i + 0.1 * r;
+            add_row(level, 0.05 * std::exp(4.0 * level), r, rows);
+        }
+    }
+    CalibrateOptions options;
+    options.model = CurveModel::power;
+    const Calibration calibration = calibrate(rows, options);
+    REQUIRE(calibration.by_repeats);
+    REQUIRE(calibration.drift);
+    CHECK(calibration.drift->spread < 0.02);
+    CHECK_FALSE(any_with(calibration.warnings, "repeats differ by"));
+}
+
 TEST_CASE("calibrate: a curve below 0 N at the lightest touch is told of, its rounding error is not") {
     const auto warnings_of = [](double offset_N) {
         CalibrationRows rows;
