@@ -34,15 +34,15 @@ Reach reach(const Tool& tool, double x_m, double y_m) {
 
 namespace {
 
-using Rectangle = std::array<double, 4>;  // x_min, x_max, y_min, y_max
+using Footprint = std::array<double, 4>;  // x_min, x_max, y_min, y_max
 
 // Returns a rectangle that holds every node whose delta can exceed -margin times its tool's depth. No node
 // lies more than highest_m above the surface plane, so that only nodes under the lowest (1 + margin) depth + highest_m of
 // a tool can.
-Rectangle box_of_reach(std::span<const Tool> tools, double margin, double highest_m) {
+Footprint box_of_reach(std::span<const Tool> tools, double margin, double highest_m) {
     constexpr double kRoundOff = 1.0 + 1e-9;  // widens the rectangle a little, since a node too many costs nothing
     constexpr double kFar_m = std::numeric_limits<double>::infinity();
-    Rectangle box_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
+    Footprint box_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
     for (const Tool& tool : tools) {
         const Pose& pose = tool.pose;
         if (!(pose.depth_m > 0.0)) continue;
@@ -57,7 +57,7 @@ Rectangle box_of_reach(std::span<const Tool> tools, double margin, double highes
     return box_m;
 }
 
-bool overlap(const Rectangle& a, const Rectangle& b) {
+bool overlap(const Footprint& a, const Footprint& b) {
     return a[0] <= b[1] && a[1] >= b[0] && a[2] <= b[3] && a[3] >= b[2];
 }
 
@@ -93,7 +93,7 @@ void find_candidates(const Compliance& compliance, std::span<const Tool> tools, 
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
-    const Rectangle within_m = box_of_reach(tools, margin, work.highest_m);
+    const Footprint within_m = box_of_reach(tools, margin, work.highest_m);
     for (std::size_t run = 0; run < work.run_box_m.size(); ++run) {
         if (!overlap(within_m, work.run_box_m[run])) continue;
         const int first = static_cast<int>(run) * kRunLength;
