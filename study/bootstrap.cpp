@@ -52,14 +52,22 @@ struct Both {
     }
 };
 
-// Sums of contributions over a resample.
+// Sums of contributions over a resample; with Average::people of shares, each of which weighs the same.
 struct Sums {
+    Average average = Average::pooled;
     double k_a = 0.0, n_a = 0.0, k_b = 0.0, n_b = 0.0;
     void add(const Both& one, double times) {
-        k_a += times * static_cast<double>(one.a.k);
-        n_a += times * static_cast<double>(one.a.n);
-        k_b += times * static_cast<double>(one.b.k);
-        n_b += times * static_cast<double>(one.b.n);
+        add(one.a, times, k_a, n_a);
+        add(one.b, times, k_b, n_b);
+    }
+
+  private:
+    void add(const Contribution& one, double times, double& k, double& n) const {
+        if (one.n == 0) return;
+        const auto counted = static_cast<double>(one.n);
+        const double weight = average == Average::people ? times / counted : times;
+        k += weight * static_cast<double>(one.k);
+        n += weight * counted;
     }
 };
 
@@ -131,7 +139,7 @@ Interval bootstrap_share(const People& people, const BootstrapOptions& options) 
     return limits(values, m, 1, skew, options.level);
 }
 
-Interval bootstrap_difference(const People& a, const People& b, const BootstrapOptions& options) {
+Interval bootstrap_difference(const People& a, const People& b, Average average, const BootstrapOptions& options) {
     assert(a.size() == b.size());
     if (counted(a) < 2 || counted(b) < 2) return kUnknown;
     std::array<std::vector<Both>, 3> people;  // both, only a, only b
@@ -147,7 +155,7 @@ Interval bootstrap_difference(const People& a, const People& b, const BootstrapO
     Random random(options.seed);
     std::vector<double> values;
     for (int r = 0; r < options.resamples; ++r) {
-        Sums sums;
+        Sums sums{average};
         for (const Stratum& stratum : strata) stratum.draw(random, sums);
         if (sums.n_a > 0.0 && sums.n_b > 0.0) values.push_back(share(sums.k_a, sums.n_a) - share(sums.k_b, sums.n_b));
     }

@@ -30,10 +30,10 @@ struct BootstrapOptions {
 // cover too seldom with few people.
 Interval bootstrap_share(const People& people, const BootstrapOptions& options);
 
-// The same, with a = 0, of the difference a - b of two such shares; entry i of both belongs to the same participant. Participants
+// The same, with a = 0, of the difference a - b of two shares; entry i of both belongs to the same participant. Participants
 // of both conditions, of a only and of b only are resampled separately, so that every resample has the design of the
-// study.
-Interval bootstrap_difference(const People& a, const People& b, const BootstrapOptions& options);
+// study. Average::people: of the means of the people's own shares, of those who have something to count.
+Interval bootstrap_difference(const People& a, const People& b, Average average, const BootstrapOptions& options);
 
 // Returns how many resamples put ten of them beyond each limit of bootstrap_share() with a = 0, which is 10 / Phi(-z),
 // rounded up to two digits. With fewer a limit is near the least or the greatest resample, whatever the level.

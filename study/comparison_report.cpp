@@ -88,7 +88,11 @@ Cells columns_of(Cells first, const Cells& last) {
     return first;
 }
 
-std::string status_of(const PeopleTest& test) { return test.status.empty() ? "computed" : test.status; }
+std::string status_of(const PeopleTest& test) {
+    if (!test.status.empty()) return test.status;
+    return test.permutation_unfit ? "computed, but for the permutation: few false (or right) marks, uneven in number"
+                                  : "computed";
+}
 
 ReportTable people_table(const char* name, const char* title, const std::vector<PairResult>& pairs) {
     ReportTable table{name, title, columns_of({"a", "b", "higher"}, {"bootstrap_low", "bootstrap_high", "status"}), {}};

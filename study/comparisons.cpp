@@ -102,6 +102,12 @@ bool anybody_in_both(const People& a, const People& b) {
     return false;
 }
 
+void leave_out_who_has_nothing_to_count(People& people) {
+    for (auto& one : people) {
+        if (one && one->n == 0) one.reset();
+    }
+}
+
 // The people who took part in the other condition too.
 People of_both(const People& people, const People& other) {
     People out = people;
@@ -111,10 +117,14 @@ People of_both(const People& people, const People& other) {
     return out;
 }
 
-// The interval is of the people whose difference stands beside it.
-Interval bootstrap_of(const People& a, const People& b, const BootstrapOptions& options) {
-    return anybody_in_both(a, b) ? bootstrap_difference(of_both(a, b), of_both(b, a), options)
-                                 : bootstrap_difference(a, b, options);
+// The interval is of the difference that stands beside it, and of the same people.
+Interval bootstrap_of(People a, People b, Average average, const BootstrapOptions& options) {
+    if (average == Average::people) {
+        leave_out_who_has_nothing_to_count(a);
+        leave_out_who_has_nothing_to_count(b);
+    }
+    return anybody_in_both(a, b) ? bootstrap_difference(of_both(a, b), of_both(b, a), average, options)
+                                 : bootstrap_difference(a, b, average, options);
 }
 
 void take_people(const People& a, const People& b, Quantity quantity, bool resample, const BootstrapOptions& options,
@@ -125,7 +135,7 @@ void take_people(const People& a, const People& b, Quantity quantity, bool resam
     }
     pair.people = compare_people(a, b, average_of(quantity), people_options(options, resample));
     if (resample) {
-        const Interval ci = bootstrap_of(a, b, options);
+        const Interval ci = bootstrap_of(a, b, average_of(quantity), options);
         if (!std::isnan(ci.low)) pair.bootstrap = ci;
     }
     for (std::size_t i = 0; i < a.size(); ++i) pair.participants_in_both += a[i] && b[i] ? 1 : 0;

@@ -229,16 +229,17 @@ void cover(const LevelCase& the_case, const Truth& truth, const LevelOptions& op
     rates.covers("PPV: bootstrap", bootstrap_share(marked_a, boot), truth.ppv[0]);
     const double se = truth.se[0] - truth.se[1], ppv = truth.ppv[0] - truth.ppv[1];
     rates.covers("Se a - b: paired t", compare_people(a, b, Average::people, how).ci, se);
-    rates.covers("Se a - b: bootstrap", bootstrap_difference(a, b, boot), se);
+    rates.covers("Se a - b: bootstrap", bootstrap_difference(a, b, Average::people, boot), se);
     rates.covers("PPV a - b: paired t", compare_people(marked_a, marked_b, Average::pooled, how).ci, ppv);
-    rates.covers("PPV a - b: bootstrap", bootstrap_difference(marked_a, marked_b, boot), ppv);
+    rates.covers("PPV a - b: bootstrap", bootstrap_difference(marked_a, marked_b, Average::pooled, boot), ppv);
     const Drawn other = draw(the_case, kEffect, random);
     const std::array<People, 2> groups = side_by_side(a, other.found[1]),
                                 groups_marked = side_by_side(marked_a, other.marked[1]);
     rates.covers("groups: Welch's t", compare_people(groups[0], groups[1], Average::people, how).ci, se);
-    rates.covers("groups: bootstrap", bootstrap_difference(groups[0], groups[1], boot), se);
+    rates.covers("groups: bootstrap", bootstrap_difference(groups[0], groups[1], Average::people, boot), se);
     rates.covers("PPV of groups: t", compare_people(groups_marked[0], groups_marked[1], Average::pooled, how).ci, ppv);
-    rates.covers("PPV of groups: bootstrap", bootstrap_difference(groups_marked[0], groups_marked[1], boot), ppv);
+    rates.covers("PPV of groups: bootstrap",
+                 bootstrap_difference(groups_marked[0], groups_marked[1], Average::pooled, boot), ppv);
     const People choices = draw_choices(the_case, kChoiceLogit, random);
     rates.covers("choices: t", compare_with_chance(choices, 0.5, how).ci, truth.choices - 0.5);
     rates.covers("choices: bootstrap", bootstrap_share(choices, boot), truth.choices);

@@ -18,6 +18,11 @@ struct Contribution {
 // What is counted: hits as a share of the nodules, hits as a share of the marks, or right answers.
 enum class Quantity { sensitivity, ppv, correct };
 
+// How the share of a condition is averaged. people: the mean of the people's own shares; somebody without anything to
+// count is left out. pooled: sum k / sum n, for counts that differ much between people, such as marks; everybody who
+// took part counts.
+enum class Average { people, pooled };
+
 // By participant; nothing for those who did not take part in the condition.
 using People = std::vector<std::optional<Contribution>>;
 

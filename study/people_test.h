@@ -9,11 +9,6 @@
 
 namespace palpa::study {
 
-// How the share of a condition is averaged. people: the mean of the people's own shares; somebody without anything to
-// count is left out. pooled: sum k / sum n, for counts that differ much between people, such as marks; everybody who
-// took part counts.
-enum class Average { people, pooled };
-
 enum class Design {
     against_chance,  // one condition against a known share
     within,          // the same people under both conditions

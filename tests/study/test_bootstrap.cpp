@@ -58,11 +58,11 @@ TEST_CASE("bootstrap: clusters widen, pairs narrow") {
 
     auto better = clustered;
     for (auto& one : better) one->k = std::min<std::int64_t>(one->n, one->k + 3);
-    const Interval within = bootstrap_difference(better, clustered, {});
+    const Interval within = bootstrap_difference(better, clustered, Average::pooled, {});
     People a(better), b(20);
     a.resize(40);
     b.insert(b.end(), clustered.begin(), clustered.end());
-    const Interval between = bootstrap_difference(a, b, {});
+    const Interval between = bootstrap_difference(a, b, Average::pooled, {});
     CHECK(width(within) < 0.3 * width(between));
     CHECK(within.low > 0.0);
 }
@@ -70,10 +70,10 @@ TEST_CASE("bootstrap: clusters widen, pairs narrow") {
 TEST_CASE("bootstrap: one participant says nothing, and neither do people who are all the same") {
     const People one{Contribution{2, 3}, Contribution{0, 0}, std::nullopt};
     CHECK(std::isnan(bootstrap_share(one, {}).low));
-    CHECK(std::isnan(bootstrap_difference(one, one, {}).high));
+    CHECK(std::isnan(bootstrap_difference(one, one, Average::pooled, {}).high));
     const People same{Contribution{1, 1}, Contribution{1, 1}};
     CHECK(std::isnan(bootstrap_share(same, {}).low));
-    CHECK(std::isnan(bootstrap_difference(same, same, {}).low));
+    CHECK(std::isnan(bootstrap_difference(same, same, Average::pooled, {}).low));
 }
 
 TEST_CASE("bootstrap: people without marks belong to the design and widen the interval of those who mark") {
@@ -85,6 +85,21 @@ TEST_CASE("bootstrap: people without marks belong to the design and widen the in
     CHECK(width(with_silent) != width(alone));
     const People absent(20);
     CHECK(std::isnan(bootstrap_share(absent, {}).low));
+}
+
+TEST_CASE("bootstrap: a difference of means of people's shares counts everybody alike, one of pooled shares does not") {
+    // nine people with little to count who find as much under both, and one with much who does not
+    People a, b;
+    for (int i = 0; i < 9; ++i) {
+        a.emplace_back(Contribution{1 + i % 3, 4});
+        b.emplace_back(Contribution{1 + (i + 1) % 3, 4});
+    }
+    a.emplace_back(Contribution{90, 100});
+    b.emplace_back(Contribution{20, 100});
+    const auto middle = [](const Interval& ci) { return 0.5 * (ci.low + ci.high); };
+    const Interval of_people = bootstrap_difference(a, b, Average::people, {4000, 1, 0.95});
+    CHECK(middle(of_people) == close_to(0.07).epsilon(0.3));  // 0.7 of one of ten people
+    CHECK(middle(bootstrap_difference(a, b, Average::pooled, {4000, 1, 0.95})) > 0.15);
 }
 
 TEST_CASE("bootstrap: few people have wider intervals than plain percentiles") {
@@ -109,13 +124,13 @@ TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the norm
     CHECK(ci.low == close_to(mean - arm).epsilon(0.1 * arm / mean));
     CHECK(ci.high == close_to(mean + arm).epsilon(0.1 * arm / mean));
     // the same people twice: every difference is 0, which says nothing about others
-    CHECK(std::isnan(bootstrap_difference(all, all, {200, 1, 0.95}).low));
+    CHECK(std::isnan(bootstrap_difference(all, all, Average::pooled, {200, 1, 0.95}).low));
     // other people: the difference has both variances
     const auto others = people(20000, 3, 0.0, 12);
     People a(all), b(20000);
     a.resize(40000);
     b.insert(b.end(), others.begin(), others.end());
-    const Interval between = bootstrap_difference(a, b, {4000, 1, 0.95});
+    const Interval between = bootstrap_difference(a, b, Average::pooled, {4000, 1, 0.95});
     CHECK(0.5 * (between.high - between.low) == close_to(std::sqrt(2.0) * arm).epsilon(0.1));
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "study/comparisons.h"
+#include "study/report.h"
 #include "tests/close_to.h"
 #include "tests/error_message.h"
 
@@ -105,6 +106,36 @@ TEST_CASE("comparisons: people who did only one of two conditions change neither
     CHECK(pairs[0].bootstrap->low < -0.17);
     CHECK(pairs[0].bootstrap->high > -0.17);
     CHECK(pairs[0].bootstrap->high < -0.1);
+}
+
+TEST_CASE("comparisons: the bootstrap's interval is of the difference beside it, however much one person did") {
+    Observations seen;
+    for (const char* name : {"a", "b"}) index_of(name, seen.conditions);
+    for (int person = 0; person < 10; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        const bool much = person == 9;
+        seen.choices.push_back({0, person, -1, much ? 90 : 1 + person % 3, much ? 100 : 4});
+        seen.choices.push_back({1, person, -1, much ? 20 : 1 + (person + 1) % 3, much ? 100 : 4});
+    }
+    const std::vector<PairResult> pairs = compare_conditions(seen, Quantity::correct, {});
+    REQUIRE(pairs.size() == 1);
+    CHECK(pairs[0].people.difference == close_to(0.07));
+    REQUIRE(pairs[0].bootstrap);
+    CHECK(0.5 * (pairs[0].bootstrap->low + pairs[0].bootstrap->high) == close_to(0.07).epsilon(0.3));
+}
+
+TEST_CASE("comparisons: a primary comparison by a permutation that would not keep its level has no p, and says why") {
+    Observations seen;
+    for (const char* name : {"a", "b"}) index_of(name, seen.conditions);
+    for (int person = 0; person < 6; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        seen.rows.push_back({0, person, -1, 0, 4, 0, person == 0 ? 1 : 0});
+        seen.rows.push_back({1, person, -1, 0, 2, 2, 0});
+    }
+    seen.primary = PrimaryComparison{Quantity::ppv, false, {"a", "b"}, "", PrimaryTest::permutation};
+    const files::Json primary = report_json(make_report(seen, {}))["primary"];
+    CHECK(primary["p"].is_null());
+    CHECK(contains(primary["status"].get<std::string>(), "but for the permutation: few false"));
 }
 
 TEST_CASE("comparisons: Holm's correction leaves out what is not known") {
