@@ -12,6 +12,7 @@
 #include "mechanics/voxel_solve.h"
 #include "parts/beam_model.h"
 #include "parts/cell_model.h"
+#include "parts/thin_walls.h"
 
 namespace palpa::parts {
 namespace {
@@ -65,6 +66,16 @@ bool is_one_cell_thick(const CellModel& model) {
     return *std::min_element(model.cells.n.begin(), model.cells.n.end()) < kFewestCells;
 }
 
+// The smaller cells that judge these: half as large, or the next larger whole number of voxels where half of an odd number
+// would be too many cells; 0 if these are too many, too.
+int finer_voxels_per_cell(int voxels_per_cell, std::int64_t cells) {
+    for (const int n : {std::max(1, voxels_per_cell / 2), (voxels_per_cell + 1) / 2}) {
+        const double times = std::pow(static_cast<double>(voxels_per_cell) / n, 3.0);
+        if (static_cast<double>(cells) * times <= 8.0 * kMostHalved) return n;
+    }
+    return 0;
+}
+
 void judge_stretch(const Part& part, const PartLoad& load, const CellModel& model, const Eigen::Matrix3Xd& load_N,
                    MethodResult& out) {
     const double height_m = height_along_m(part, load);
@@ -89,7 +100,8 @@ std::optional<double> compliance_on(const Part& part, const PartLoad& load, int 
     }
 }
 
-// Cells as small as voxels are taken as they are.
+// Cells as small as voxels are taken as they are. Where walls or layers are thinner than two cells, cells twice as large may be
+// as wrong as these, so that smaller ones are asked in any case.
 void judge_cells(const Part& part, const PartLoad& load, int voxels_per_cell, MethodResult& out) {
     if (!out.answered) return;
     const auto against = [&](int n) -> std::optional<double> {
@@ -99,11 +111,13 @@ void judge_cells(const Part& part, const PartLoad& load, int voxels_per_cell, Me
     };
     out.coarser = against(2 * voxels_per_cell);
     if (voxels_per_cell == 1 || !out.why_not.empty()) return;
-    if (out.coarser && std::abs(*out.coarser) <= kMostByCells) return;
-    const bool halved = out.cells <= kMostHalved;
-    const std::optional<double> other = halved ? against((voxels_per_cell + 1) / 2) : out.coarser;
+    const bool far_apart = !out.coarser || std::abs(*out.coarser) > kMostByCells;
+    if (!far_apart && share_of_thin_walls(part.voxels, kFewestCells * voxels_per_cell) < kMostThin) return;
+    const int finer = finer_voxels_per_cell(voxels_per_cell, out.cells);
+    const std::optional<double> other = finer > 0 ? against(finer) : out.coarser;
     if (!other || std::abs(*other) <= kMostApart) return;
-    out.why_not = std::string("on cells ") + (halved ? "half" : "twice") + " as large the displacement is " +
+    const double cell_mm = 1e3 * part.voxels.frame.pitch_m * (finer > 0 ? finer : 2 * voxels_per_cell);
+    out.why_not = "on cells of " + files::short_number(cell_mm) + " mm the displacement is " +
                   files::short_number(100.0 * std::abs(*other)) + " % " + (*other > 0.0 ? "greater" : "less") +
                   ": smaller cells are needed";
 }

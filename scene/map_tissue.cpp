@@ -80,7 +80,7 @@ void add_isotonic_note(const MapTissue& tissue, Plan& plan) {
     if (tissue.field.isotonic_changed > 0) {
         plan.notes.push_back(std::to_string(tissue.field.isotonic_changed) + " of " +
                              std::to_string(tissue.map.normal_N.size()) +
-                             " forces did not rise with depth and were changed (isotonic regression)");
+                             " forces were changed so that none is below a shallower one (isotonic regression)");
     }
 }
 

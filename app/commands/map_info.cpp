@@ -12,7 +12,7 @@ files::Json map_info(const stiffnessmaps::Map& map, const stiffnessmaps::Field& 
     json["missing"] = stiffnessmaps::missing_count(map);
     const stiffnessmaps::ForceRange range = stiffnessmaps::force_range(map);
     json["force_range_N"] = {range.lowest_N, range.highest_N};
-    json["not_rising_with_depth"] = field.isotonic_changed;
+    json["changed_by_isotonic_regression"] = field.isotonic_changed;
     const avatar::DisplayRatio law = avatar::display_ratio_clear();
     const double noise_N = stiffnessmaps::normal_noise_N(map);
     json["noise_N"] = stiffnessmaps::knows_noise(map) ? files::Json(noise_N) : files::Json();

@@ -28,8 +28,8 @@ void print_info(const stiffnessmaps::Map& map, const files::Json& info) {
                 files::short_number(1e3 * map.origin_m[1]).c_str());
     std::printf("  force       %s to %s N, %zu of %zu not measured\n", files::short_number(range.lowest_N).c_str(),
                 files::short_number(range.highest_N).c_str(), stiffnessmaps::missing_count(map), map.normal_N.size());
-    std::printf("  not rising  %s forces below a shallower one (isotonic regression at look-up, raw values kept)\n",
-                info["not_rising_with_depth"].dump().c_str());
+    std::printf("  isotonic    %s forces changed at look-up, so that none is below a shallower one (raw values kept)\n",
+                info["changed_by_isotonic_regression"].dump().c_str());
     std::printf("  noise       %s; the avatar's laws then smooth by %s mm\n",
                 info["noise_N"].is_null() ? "not known (too few neighbours)"
                                           : ("about " + files::short_number(1e3 * info["noise_N"].get<double>()) +

@@ -53,22 +53,22 @@ bool reads_pressure(const StudyScene& scene) {
     return scene.plan->profile.level != calibration::LevelField::contact_area;
 }
 
-void note_pen(const App& app, StudyRun& run) {
+void note_pressure_of_tool(const App& app, StudyRun& run) {
     const bool on_tissue = run.progress.next && shows_tissue(run);
-    run.pen = on_tissue ? pen_verdict(due_condition(run).modality, reads_pressure(due_scene(run)), app.notices.devices,
-                                      app.notices.devices_listed, app.pressure)
-                        : PenVerdict::not_needed;
-    if (run.pen == PenVerdict::ready) run.pen_must_vary = false;
-    if (run.pen == PenVerdict::untried && run.pen_must_vary) run.pen = PenVerdict::no_pressure;
+    run.pressure = on_tissue ? pressure_verdict(due_condition(run).modality, reads_pressure(due_scene(run)),
+                                                app.notices.devices, app.notices.devices_listed, app.pressure)
+                             : PressureVerdict::not_needed;
+    if (run.pressure == PressureVerdict::ready) run.pressure_must_vary = false;
+    if (run.pressure == PressureVerdict::untried && run.pressure_must_vary) run.pressure = PressureVerdict::no_pressure;
 }
 
-// A trial begins only with its device, and a pen's trial only with a pen that measures pressure.
+// A trial begins only with its device, and a pen's or a finger's trial only with one that measures pressure.
 bool may_begin(const App& app) {
     const StudyRun& run = *study_of(app.doing);
-    return is_device_here(app) && run.pen != PenVerdict::no_pressure && run.devices_note.empty();
+    return is_device_here(app) && run.pressure != PressureVerdict::no_pressure && run.devices_note.empty();
 }
 
-// Why a trial says nothing about the person: its device is gone, its pen turned out to measure no pressure, its touches lack
+// Why a trial says nothing about the person: its device is gone, or turned out to measure no pressure, its touches lack
 // the level that the profile reads, nothing was touched in its time, or its time went by while the app was out of sight or
 // the computer slept.
 enum class Interruption { device_gone, no_pressure, no_level, untouched, overslept };
@@ -154,9 +154,9 @@ bool repeat_if_unproven(platform::Window& window, App& app) {
         interrupt_study_trial(Interruption::no_level, window, app);
         return true;
     }
-    note_pen(app, run);
-    if (run.pen == PenVerdict::ready || run.pen == PenVerdict::not_needed) return false;
-    run.pen_must_vary = true;
+    note_pressure_of_tool(app, run);
+    if (run.pressure == PressureVerdict::ready || run.pressure == PressureVerdict::not_needed) return false;
+    run.pressure_must_vary = true;
     interrupt_study_trial(Interruption::no_pressure, window, app);
     return true;
 }
@@ -200,7 +200,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     follow_keeper(now_of(app, window), app);
     if (trial_waits(run) && !run.keeping_since_s) {
         note_devices(window, app);
-        note_pen(app, run);
+        note_pressure_of_tool(app, run);
         note_missing(app, run);
         if (may_begin(app)) {
             begin_study_trial(window, gui, app);
@@ -209,7 +209,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
             wait_for_device(false, run);
         }
     }
-    if (at<step::Instructions>(run) || at<step::Device>(run)) note_pen(app, run);
+    if (at<step::Instructions>(run) || at<step::Device>(run)) note_pressure_of_tool(app, run);
     if (auto* device = std::get_if<step::Device>(&run.step)) {
         note_missing(app, run);
         const bool stopped = devices_stopped(app);  // but they could run
@@ -217,8 +217,9 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
         device->here = stopped || may_begin(app);
     }
     if (!trial_goes_on(run)) return;
-    note_pen(app, run);
-    if (run.pen == PenVerdict::no_pressure) return interrupt_study_trial(Interruption::no_pressure, window, app);
+    note_pressure_of_tool(app, run);
+    if (run.pressure == PressureVerdict::no_pressure)
+        return interrupt_study_trial(Interruption::no_pressure, window, app);
     if (gives_no_force(app, kFewWithoutLevel)) return interrupt_study_trial(Interruption::no_level, window, app);
     if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
     if (!is_device_here(app) || devices_failed(window.now_s(), app))

@@ -31,7 +31,7 @@ std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffness
                                 : words::kNoMissingData);
     out.push_back(words::filled(
         words::kNoise,
-        {knows_noise(map) ? words::filled(words::kNoiseAtMost, {files::short_number(1e3 * normal_noise_N(map))})
+        {knows_noise(map) ? words::filled(words::kNoiseAbout, {files::short_number(1e3 * normal_noise_N(map))})
                           : words::kNotKnown,
          std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));

@@ -229,11 +229,19 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     if (forward(words::kContinue, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
 }
 
+// What the due trial is done with, in a word.
+std::string device_of(const StudyRun& run) {
+    std::string device = name_of(due_condition(run).modality);
+    std::replace(device.begin(), device.end(), '-', ' ');
+    return device;
+}
+
 void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const study::PlannedTrial& trial = due_trial(run);
     title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
-    const float pen_px = run.pen == PenVerdict::not_needed ? 0.0f : 2.0f * ImGui::GetTextLineHeightWithSpacing();
-    const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm() + pen_px;
+    const float check_px =
+        run.pressure == PressureVerdict::not_needed ? 0.0f : 2.0f * ImGui::GetTextLineHeightWithSpacing();
+    const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm() + check_px;
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     wrapped_text(study::instructions_for(run.protocol, trial));
@@ -242,19 +250,19 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
         wrapped_text(words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}));
     }
     end_scrolled("text", gui);
-    if (run.pen != PenVerdict::not_needed) {
-        paragraph(run.pen == PenVerdict::ready     ? words::kPenReady
-                  : run.pen == PenVerdict::untried ? words::kPenUntried
-                                                   : words::kPenNoPressure);
+    if (run.pressure != PressureVerdict::not_needed) {
+        paragraph(words::filled(run.pressure == PressureVerdict::ready     ? words::kPressureReady
+                                : run.pressure == PressureVerdict::untried ? words::kPressureUntried
+                                                                           : words::kPressureMissing,
+                                {device_of(run)}));
     }
     if (forward(words::kStart, gui)) wishes.study = BeginStep{};
     stop_button(gui, wishes);
 }
 
 void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
-    std::string device = name_of(due_condition(run).modality);
-    std::replace(device.begin(), device.end(), '-', ' ');
-    const bool no_pressure = step.connected && run.pen == PenVerdict::no_pressure;
+    const std::string device = device_of(run);
+    const bool no_pressure = step.connected && run.pressure == PressureVerdict::no_pressure;
     const char* text = no_pressure ? words::kDeviceNoPressure
                        : step.here ? words::kDeviceIsBack
                                    : words::kDeviceMissing;
@@ -270,13 +278,15 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
     if (step.unseen) paragraph(words::kTimeOverUnseen);
     if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
-        warning_paragraph(words::kNeedsPressure);
+        const bool finger = due_condition(run).modality == study::Modality::finger;
+        warning_paragraph(finger ? words::kNeedsFingerPressure : words::kNeedsPressure);
         paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
     } else if (!step.here || step.no_level) {
         if (!step.here && run.devices_note.empty()) warning_paragraph(words::filled(words::kTrialWaits, {device}));
         paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
     }
-    if (step.here && run.pen == PenVerdict::untried) paragraph(words::kPenUntried);
+    if (step.here && run.pressure == PressureVerdict::untried)
+        paragraph(words::filled(words::kPressureUntried, {device}));
     gap(gui);
     if (forward(words::kStart, gui, step.here)) wishes.study = BeginStep{};
     trials_button(gui, run, wishes);

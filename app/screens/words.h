@@ -530,8 +530,8 @@ inline constexpr const char* kDepthsFromTo = "{} depths, {} to {} mm";
 inline constexpr const char* kForceFromTo = "Force {} to {} N";
 inline constexpr const char* kShareMissing = "Missing data: {} %";
 inline constexpr const char* kNotKnown = "not known";
-inline constexpr const char* kNoise = "Noise {}; {} forces do not rise with depth";
-inline constexpr const char* kNoiseAtMost = "at most {} mN";
+inline constexpr const char* kNoise = "Noise {}; {} forces changed so that all rise with depth";
+inline constexpr const char* kNoiseAbout = "about {} mN";
 inline constexpr const char* kTangential = "Tangential force: {}";
 inline constexpr const char* kIndenter = "Indenter: {}, radius {} mm";
 inline constexpr const char* kPlacedNodule = "Nodule {} (placed) at {}, {} mm";
@@ -621,12 +621,14 @@ inline constexpr const char* kAnswerFull = "No more fits into this answer.";
 inline constexpr const char* kNothingFelt = "Nothing could be felt";
 inline constexpr const char* kNeedsPressure =
     "This trial needs a pen that measures pressure. Press with it anywhere, lightly, then hard; as soon as its "
-    "pressure "
-    "varies, the trial can start.";
-inline constexpr const char* kPenReady = "Device check: the pen measures pressure.";
-inline constexpr const char* kPenUntried =
-    "Device check: press with the pen here, lightly, then hard, to try its pressure.";
-inline constexpr const char* kPenNoPressure = "Device check: the pen does not measure pressure.";
+    "pressure varies, the trial can start.";
+inline constexpr const char* kNeedsFingerPressure =
+    "This trial needs a screen that measures how hard a finger presses. Press anywhere, lightly, then hard; as soon as "
+    "the pressure varies, the trial can start.";
+inline constexpr const char* kPressureReady = "Device check: the {} measures pressure.";
+inline constexpr const char* kPressureUntried =
+    "Device check: press with the {} here, lightly, then hard, to try its pressure.";
+inline constexpr const char* kPressureMissing = "Device check: the {} does not measure pressure.";
 inline constexpr const char* kTrialWaits =
     "This trial is done with the {}. Connect it or switch it on; the app notices it within a second.";
 inline constexpr const char* kNothingTouched = "The time is over";

@@ -17,25 +17,25 @@ bool tool_allowed(study::Modality modality, platform::Tool tool) {
     }
 }
 
-PenVerdict pen_verdict(study::Modality modality, bool reads_pressure,
-                       const std::vector<platform::PointerDevice>& devices, bool devices_listed,
-                       const platform::PressureWatch& pressure) {
-    if (modality != study::Modality::pen || !reads_pressure) return PenVerdict::not_needed;
-    switch (platform::pressure_kind(pressure, platform::Tool::pen)) {
+PressureVerdict pressure_verdict(study::Modality modality, bool reads_pressure,
+                                 const std::vector<platform::PointerDevice>& devices, bool devices_listed,
+                                 const platform::PressureWatch& pressure) {
+    const bool finger = modality == study::Modality::finger;
+    if ((modality != study::Modality::pen && !finger) || !reads_pressure) return PressureVerdict::not_needed;
+    const platform::Tool tool = finger ? platform::Tool::finger : platform::Tool::pen;
+    switch (platform::pressure_kind(pressure, tool)) {
         case platform::PressureKind::varies:
-            return PenVerdict::ready;
+            return PressureVerdict::ready;
         case platform::PressureKind::constant:
         case platform::PressureKind::missing:
-            return PenVerdict::no_pressure;
+            return PressureVerdict::no_pressure;
         case platform::PressureKind::unknown:
             break;
     }
-    const auto measures = [](const platform::PointerDevice& d) {
-        return d.tool == platform::Tool::pen && d.has_pressure;
-    };
+    const auto measures = [&](const platform::PointerDevice& d) { return d.tool == tool && d.has_pressure; };
     const bool none =
         devices_listed && device_here(modality, devices) && std::none_of(devices.begin(), devices.end(), measures);
-    return none ? PenVerdict::no_pressure : PenVerdict::untried;
+    return none ? PressureVerdict::no_pressure : PressureVerdict::untried;
 }
 
 bool device_here(study::Modality modality, const std::vector<platform::PointerDevice>& devices) {

@@ -11,16 +11,16 @@ namespace palpa::app {
 
 bool tool_allowed(study::Modality modality, platform::Tool tool);
 
-// What the device check says of a trial's pen.
-enum class PenVerdict : std::uint8_t {
-    not_needed,  // the trial is not done with a pen, or its profile reads no pressure
-    untried,     // a pen that may measure pressure has not pressed yet
+// What the device check says of the pressure of a trial's pen, or finger.
+enum class PressureVerdict : std::uint8_t {
+    not_needed,  // the trial is not done with a pen or a finger, or its profile reads no pressure
+    untried,     // a pen or finger that may measure pressure has not pressed yet
     ready,       // its pressure varies
-    no_pressure  // no pen measures pressure
+    no_pressure  // none measures pressure; many screens send the same number for every touch
 };
-PenVerdict pen_verdict(study::Modality modality, bool reads_pressure,
-                       const std::vector<platform::PointerDevice>& devices, bool devices_listed,
-                       const platform::PressureWatch& pressure);
+PressureVerdict pressure_verdict(study::Modality modality, bool reads_pressure,
+                                 const std::vector<platform::PointerDevice>& devices, bool devices_listed,
+                                 const platform::PressureWatch& pressure);
 
 // True if one of these devices serves a trial of this modality. Also true for a mouse, which is always there, and for
 // modalities that name no tool.

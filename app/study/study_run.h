@@ -42,8 +42,8 @@ struct StudyRun {
     double choices_began_s = 0.0;
     // For a keeper (session/keeper.h): what it has not been given yet, and what it reports.
     bool on_tablet = false;
-    bool pen_must_vary = false;                // a trial has ended because its pen always sent the same
-    PenVerdict pen = PenVerdict::not_needed;   // of the due trial; set by the loop
+    bool pressure_must_vary = false;  // a trial has ended because its pen, or finger, always sent the same
+    PressureVerdict pressure = PressureVerdict::not_needed;  // of the due trial; set by the loop
     std::string devices_note;                  // why arm and pins of the due trial do not run; set by the loop
     int first_run = 1;                         // first run number of the log that may be free
     std::vector<study::RunFiles> unkept_runs;  // typed trials

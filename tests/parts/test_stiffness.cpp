@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "parts/stiffness.h"
+#include "parts/thin_walls.h"
 #include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/parts/small_part.h"
@@ -107,9 +108,30 @@ TEST_CASE("part stiffness: cells too large for the toothbrush do not apply, and 
         REQUIRE(results[1].coarser);
         CHECK((std::abs(*results[1].coarser) < kMostByCells) == (cell_mm < 1.0));
         if (right) continue;
-        CHECK(contains(results[1].why_not, "on cells half as large the displacement is"));
+        CHECK(contains(results[1].why_not, "on cells of " + std::to_string(static_cast<int>(cell_mm) / 2)));
         CHECK_FALSE(results[0].error);  // what does not apply is no reference
     }
+}
+
+TEST_CASE("part stiffness: cells that are as large as a flange do not apply, though larger ones say much the same") {
+    const Part slotted = parsed(Json::parse(R"({
+        "voxel_mm": 1, "size_mm": [60, 6, 12],
+        "materials": {"hard": {"young_Pa": 2e9, "poisson": 0.35, "density_kg_per_m3": 1200}},
+        "shape": [{"add": {"all": true}, "material": "hard"},
+                  {"remove": {"box": {"min_mm": [12, -1, 4], "max_mm": [48, 7, 8]}}}],
+        "supports": [{"face": "xmin", "fix": "xyz"}],
+        "loads": {"tip": {"face": "xmax", "direction": "-z", "force_N": 0.2}}})"));
+    CHECK(share_of_thin_walls(slotted.voxels, 4) == 0.0);  // flanges of four voxels
+    CHECK(share_of_thin_walls(slotted.voxels, 6) == close_to(36.0 * 8.0 / (60.0 * 12.0 - 36.0 * 4.0)));
+    const auto on_cells = [&](double cell_mm) {
+        return stiffness_of(slotted, slotted.loads[0], {{Method::voxels}, 1e-3 * cell_mm, 1e-3})[0];
+    };
+    const MethodResult fine = on_cells(1), coarse = on_cells(3);
+    CHECK(fine.why_not.empty());
+    CHECK(on_cells(2).why_not.empty());  // 2 % off
+    CHECK(coarse.displacement_m < 0.6 * fine.displacement_m);
+    CHECK(std::abs(coarse.coarser.value_or(1.0)) < kMostByCells);
+    CHECK(contains(coarse.why_not, "on cells of 1 mm the displacement is"));
 }
 
 TEST_CASE("part stiffness: a beam doubts a load that is oblique across its section, and one that is spread along it") {

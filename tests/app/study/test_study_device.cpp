@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <utility>
 
 #include "app/study/study_device.h"
 
@@ -7,31 +8,34 @@ using namespace palpa::platform;
 using namespace palpa::study;
 using namespace palpa::app;
 
-TEST_CASE("study device: a pen's trial needs a pressure that varies, or might") {
-    const PointerDevice pen{1, "Pen", Tool::pen, true};
-    const PointerDevice blunt{1, "Pen", Tool::pen, false};
-    const auto verdict = [](const PointerDevice& device, const PressureWatch& pressure) {
-        return pen_verdict(Modality::pen, true, {device}, true, pressure);
-    };
-    const auto pressed = [](double step) {
-        PressureWatch out;
-        Sample sample;
-        sample.tool = Tool::pen;
-        for (int i = 0; i < 100; ++i) {
-            sample.phase = i == 0 ? Phase::down : Phase::move;
-            sample.t_host_s = 0.01 * i;
-            sample.pressure = 0.5 + step * i;
-            watch(sample, out);
-        }
-        return out;
-    };
-    CHECK(verdict(pen, {}) == PenVerdict::untried);
-    CHECK(verdict(blunt, {}) == PenVerdict::no_pressure);
-    CHECK(verdict(pen, pressed(0.0)) == PenVerdict::no_pressure);
-    CHECK(verdict(pen, pressed(0.001)) == PenVerdict::ready);
-    CHECK(pen_verdict(Modality::pen, false, {blunt}, true, {}) == PenVerdict::not_needed);
-    CHECK(pen_verdict(Modality::finger, true, {blunt}, true, {}) == PenVerdict::not_needed);
-    CHECK(pen_verdict(Modality::pen, true, {}, false, {}) == PenVerdict::untried);
+TEST_CASE("study device: a pen's trial, and a finger's, needs a pressure that varies, or might") {
+    for (const auto& [modality, tool] : {std::pair{Modality::pen, Tool::pen}, {Modality::finger, Tool::finger}}) {
+        CAPTURE(name_of(modality));
+        const PointerDevice sensing{1, "Sensing", tool, true}, blunt{1, "Blunt", tool, false};
+        const auto verdict = [&](const PointerDevice& device, const PressureWatch& pressure) {
+            return pressure_verdict(modality, true, {device}, true, pressure);
+        };
+        const auto pressed = [&](double step) {
+            PressureWatch out;
+            Sample sample;
+            sample.tool = tool;
+            for (int i = 0; i < 100; ++i) {
+                sample.phase = i == 0 ? Phase::down : Phase::move;
+                sample.t_host_s = 0.01 * i;
+                sample.pressure = 0.5 + step * i;
+                watch(sample, out);
+            }
+            return out;
+        };
+        CHECK(verdict(sensing, {}) == PressureVerdict::untried);
+        CHECK(verdict(blunt, {}) == PressureVerdict::no_pressure);
+        CHECK(verdict(sensing, pressed(0.0)) == PressureVerdict::no_pressure);
+        CHECK(verdict(sensing, pressed(0.001)) == PressureVerdict::ready);
+        CHECK(pressure_verdict(modality, false, {blunt}, true, {}) == PressureVerdict::not_needed);
+        CHECK(pressure_verdict(modality, true, {}, false, {}) == PressureVerdict::untried);
+        const PointerDevice mouse{2, "Mouse", Tool::mouse, false};
+        CHECK(pressure_verdict(Modality::mouse, true, {mouse}, true, pressed(0.0)) == PressureVerdict::not_needed);
+    }
 }
 
 TEST_CASE("study device: a pen's trial needs a pen, a finger's a touch screen, the others nothing that is listed") {
