@@ -7,7 +7,7 @@ import fs from 'node:fs';
 import net from 'node:net';
 import path from 'node:path';
 import test from 'node:test';
-import {frames, openBrowser, pen, report, started} from './browser.mjs';
+import {frames, openBrowser, pen, report, started, touch} from './browser.mjs';
 import {at, key, makeFolder, open, protocol, startDesk, stored, stroke, tiny, until, uploads} from './study.mjs';
 
 const options = {skip: process.env.PALPA ? false : 'no palpa of the desktop'};
@@ -543,6 +543,38 @@ test('a study with a calibration profile that reads a pen\'s counts is refused i
     assert.match(await page.textContent('#message-text'), /conditions\[1\] 'Touchpad': found calibration profile 'bamboo', which reads pressure_raw/);
     assert.deepEqual(await stored(page), []);
 }));
+
+test('a finger whose pressure is always the same is refused in a study, until it varies', options, () => withDesk(async (browser, desk, where) => {
+    const {page} = browser;
+    const press = async (forceOf) => {
+        await touch(browser, 'touchStart', [{x: 700, y: 400, force: forceOf(0), id: 1}]);
+        for (let i = 1; i <= 60; ++i) {
+            await touch(browser, 'touchMove', [{x: 700 + i, y: 400, force: forceOf(i), id: 1}]);
+            await frames(page, 1);
+        }
+        await touch(browser, 'touchEnd', []);
+        await frames(page, 3);
+    };
+    await open(browser, `${desk.url}?protocol=by-finger&participant=7`);
+    await begin(page);
+    await press(() => 0.5);
+    await at(page, 'device');
+    await key(page, 'Enter');
+    await at(page, 'device'); // not now
+    await press((i) => 0.2 + 0.01 * i);
+    await key(page, 'Enter');
+    await at(page, 'trial');
+    await press((i) => 0.2 + 0.01 * i);
+    await key(page, 'f');
+    await at(page, 'done');
+    await until('all is at the desk', () => uploads(where).length === 3); // answers, and two trials
+    const trials = uploads(where).map((file) => JSON.parse(fs.readFileSync(file)).files.find(({name}) => name.endsWith('_events.tsv')))
+        .filter(Boolean).sort((a, b) => a.name < b.name ? -1 : 1).map(({text}) => text);
+    assert.equal(trials.length, 2);
+    assert.match(trials[0], /\tno_pressure\t/);
+    assert.doesNotMatch(trials[0], /\tfinish\t/);
+    assert.match(trials[1], /\tfinish\t/);
+}, {protocols: {'by-finger': {...tiny, conditions: [{id: 'finger', modality: 'finger', scene: 'of-the-desk.json'}]}}}));
 
 test('the list of studies knows by their scenes which ones need the desk, and a protocol that is none takes no other from it', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;
