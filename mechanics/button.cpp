@@ -118,20 +118,46 @@ void fill_table(const ButtonModel& model, ButtonCurve& curve) {
     }
 }
 
-// The first peak of the pressing force and the trough after it, between which the button snaps.
-void find_snap(const ButtonModel& model, ButtonCurve& curve) {
+// The standard deviation of what a sensor added to a measured curve, from the median of its fourth differences, in which a
+// curve of ten rows a period leaves a sixth of its amplitude. 0 for fewer than ten rows.
+double noise_N(const MeasuredSupport& support) {
+    const std::vector<double>& F = support.press_N;
+    std::vector<double> differences;
+    for (std::size_t i = 4; i < F.size(); ++i)
+        differences.push_back(std::abs(F[i] - 4.0 * F[i - 1] + 6.0 * F[i - 2] - 4.0 * F[i - 3] + F[i - 4]));
+    if (differences.size() < 6) return 0.0;
+    const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+    std::nth_element(differences.begin(), middle, differences.end());
+    return *middle / (0.6745 * std::sqrt(70.0));  // 1 + 16 + 36 + 16 + 1
+}
+
+// What a measured force must fall by to be no noise.
+double least_fall_N(const MeasuredSupport& support) {
+    constexpr double kOfGreatest = 0.02, kOfNoise = 8.0;
+    const double most_N = *std::max_element(support.press_N.begin(), support.press_N.end());
+    return std::max(kOfGreatest * most_N, kOfNoise * noise_N(support));
+}
+
+// The greatest fall of the pressing force, if it is greater than `least_N`: it snaps from the peak to the trough.
+void find_snap(const ButtonModel& model, double least_N, ButtonCurve& curve) {
     const std::vector<double>& F = curve.press_N[0];
-    std::size_t i = 1;
-    while (i < kTravels && !(F[i] < F[i - 1])) ++i;
-    if (i == kTravels) return;
+    std::size_t top = 0, peak = 0, trough = 0;
+    double fall_N = 0.0;
+    for (std::size_t i = 1; i < kTravels; ++i) {
+        if (F[i] >= F[top]) top = i;
+        if (F[top] - F[i] <= 0.0 || F[top] - F[i] < fall_N) continue;
+        fall_N = F[top] - F[i];
+        peak = top;
+        trough = i;
+    }
+    if (!(fall_N > least_N)) return;
     curve.snaps = true;
     const auto rises = [&](double w) { return model(w, false, false).slope_N_per_m > 0.0; };
     const auto falls = [&](double w) { return !rises(w); };
-    curve.peak_m = halved(travel_at(curve, std::max<std::size_t>(i, 2) - 2), travel_at(curve, i), rises);
+    curve.peak_m = halved(travel_at(curve, std::max<std::size_t>(peak, 1) - 1), travel_at(curve, peak + 1), rises);
     curve.peak_N = model(curve.peak_m, false, false).N;
-    while (i < kTravels && !(F[i] > F[i - 1])) ++i;
-    if (i == kTravels) return;  // the stop comes first
-    curve.trough_m = halved(travel_at(curve, i - 2), travel_at(curve, i), falls);
+    if (trough + 1 == kTravels) return;  // the stop comes first
+    curve.trough_m = halved(travel_at(curve, trough - 1), travel_at(curve, trough + 1), falls);
     curve.trough_N = model(curve.trough_m, false, false).N;
 }
 
@@ -248,7 +274,8 @@ ButtonCurve press_button(const Button& button, const CoverTable& cover) {
     if (latch != nullptr) {
         find_latch(model, *latch, curve);
     } else {
-        find_snap(model, curve);
+        const auto* support = std::get_if<MeasuredSupport>(&button.support);
+        find_snap(model, support != nullptr ? least_fall_N(*support) : 0.0, curve);
         if (curve.snaps && std::isfinite(curve.trough_m)) curve.on_m = curve.trough_m;
         if (button.on_m) curve.on_m = button.on_m;
     }

@@ -55,7 +55,9 @@ struct ButtonCurve {
     // [on]: at equally spaced travels from 0
     std::array<std::vector<double>, 2> press_N;
     std::array<std::vector<double>, 2> release_N;
-    bool snaps = false;  // the force falls somewhere while the button is pressed further; the next four are of that
+    // the force falls somewhere while the button is pressed further, with a measured support by 2 % of its greatest force and
+    // 8 standard deviations of its noise at least; the next four are of the greatest fall
+    bool snaps = false;
     double peak_m = 0.0;
     double peak_N = 0.0;
     double trough_m = std::numeric_limits<double>::quiet_NaN();  // NaN: the stop comes before a trough

@@ -155,22 +155,36 @@ int fix_side(const Voxels& voxels, const VoxelCells& cells, const GridLevel& lev
 
 int fix_region(const VoxelCells& cells, const GridLevel& level, const Region& region, std::uint8_t axes,
                std::vector<std::uint8_t>& fixed) {
-    // A region reaches from its lower sides to just below its upper ones, so that voxels belong to one of two neighbours;
-    // a body that is held up to a plane is held in it.
-    const double below_m = 1e-6 * cells.cell_m;
-    const auto in_or_on = [&](const Point& at_m) {
-        for (int k = 0; k < 8; ++k) {
-            Point near_m = at_m;
-            for (std::size_t c = 0; c < 3; ++c) near_m[c] -= (k >> c & 1) != 0 ? below_m : 0.0;
-            if (contains(region, near_m)) return true;
+    // What counts is what lies beside a node, where the body is: on a side of the region, the region may lie on either hand
+    // (it reaches from its lower sides to just below its upper ones), and what it leaves out of the body is free, though all
+    // beyond the body may belong to it.
+    std::vector<std::uint8_t> octants(level.node_place.size(), 0);  // bit of each octant in which a cell lies
+    for (std::size_t i = 0; i < level.corners.size(); ++i) {
+        for (const int node : level.corners[i]) {
+            int octant = 0;  // bit c: the cell lies below the node along c
+            for (int c = 0; c < 3; ++c)
+                octant |= static_cast<int>(level.node_place[at(node)][at(c)] > level.cell_place[i][at(c)]) << c;
+            octants[at(node)] = static_cast<std::uint8_t>(octants[at(node)] | 1 << octant);
+        }
+    }
+    const double aside_m = 1e-6 * cells.cell_m;
+    const auto is_held = [&](const Point& node_at_m, int in_octants) {
+        for (int octant = 0; octant < 8; ++octant) {
+            Point near_m = node_at_m;
+            for (int c = 0; c < 3; ++c) near_m[at(c)] += (octant >> c & 1) != 0 ? -aside_m : aside_m;
+            if ((in_octants >> octant & 1) != 0 && contains(region, near_m)) return true;
         }
         return false;
     };
+    constexpr int kAllAround = 0xFF;  // a region that only touches the body from outside holds it there
     int n = 0;
-    for (std::size_t i = 0; i < level.node_place.size(); ++i) {
-        if (!in_or_on(node_m(cells, level.node_place[i]))) continue;
-        fixed[i] = static_cast<std::uint8_t>(fixed[i] | axes);
-        ++n;
+    for (const bool outside : {false, true}) {
+        for (std::size_t i = 0; i < level.node_place.size(); ++i) {
+            if (!is_held(node_m(cells, level.node_place[i]), outside ? kAllAround : octants[i])) continue;
+            fixed[i] = static_cast<std::uint8_t>(fixed[i] | axes);
+            ++n;
+        }
+        if (n > 0) break;
     }
     return n;
 }

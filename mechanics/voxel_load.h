@@ -29,7 +29,8 @@ Eigen::Matrix3Xd spread_force(const VoxelCells& cells, const GridLevel& level, c
                               const Point& force_N);
 
 // Add bits (1 x, 2 y, 4 z) to the nodes of the grid's plane that is nearest to that side of all that is filled, or to the
-// nodes in a region or on its surface. Return how many nodes these are.
+// nodes in a region or on its surface, where cells beside the node are in it; if there are none, to those that the region touches
+// from outside. Return how many nodes these are.
 int fix_side(const Voxels& voxels, const VoxelCells& cells, const GridLevel& level, Side side, std::uint8_t axes,
              std::vector<std::uint8_t>& fixed);
 int fix_region(const VoxelCells& cells, const GridLevel& level, const Region& region, std::uint8_t axes,

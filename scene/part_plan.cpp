@@ -24,7 +24,7 @@ using parts::Method;
 constexpr double kMargin_m = 8e-3;     // around and between the designs
 constexpr double kBarOfLoads = 2.5;    // full scale of the force bar, in forces of the load
 constexpr double kEnergyError = 1e-3;  // of voxels
-constexpr int kVersion = 5;            // of what the cache holds
+constexpr int kVersion = 6;            // of what the cache holds
 
 std::string percent_of(double share) { return files::short_number(100.0 * share) + " %"; }
 

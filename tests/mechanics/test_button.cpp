@@ -67,6 +67,37 @@ TEST_CASE("button: a stop before the trough leaves no trough, and nothing that g
     CHECK_FALSE(curve.off_m);
 }
 
+TEST_CASE("button: a measured curve snaps where it falls most, whatever its noise; noise alone is no snap") {
+    constexpr int kRows = 151;
+    constexpr unsigned kSeed = 5;
+    CAPTURE(kSeed);
+    std::mt19937 random(kSeed);
+    std::normal_distribution<double> noise_N(0.0, 0.005);
+    MeasuredSupport dome, spring;
+    for (int i = 0; i < kRows; ++i) {
+        const double w_mm = 0.02 * i;  // up to 0.6 N at 1.4 mm, down to 0.3 N at 2.2 mm, up to 1.1 N
+        const double dome_N = w_mm < 1.4   ? 0.6 * w_mm / 1.4
+                              : w_mm < 2.2 ? 0.6 - 0.375 * (w_mm - 1.4)
+                                           : 0.3 + (w_mm - 2.2);
+        for (auto& [support, press_N] : {std::pair<MeasuredSupport&, double>{dome, dome_N}, {spring, 0.3 * w_mm}}) {
+            support.travel_m.push_back(1e-3 * w_mm);
+            support.press_N.push_back(i == 0 ? 0.0 : press_N + noise_N(random));
+            support.release_N.push_back(i == 0 ? 0.0 : press_N - 0.05);
+        }
+    }
+    Button button;
+    button.travel_m = 3e-3;
+    button.support = dome;
+    const ButtonCurve curve = press_button(button);
+    REQUIRE(curve.snaps);
+    CHECK(1e3 * curve.peak_m == close_to(1.4).epsilon(0.05));
+    CHECK(curve.peak_N == close_to(0.6).epsilon(0.03));
+    CHECK(1e3 * curve.trough_m == close_to(2.2).epsilon(0.05));
+    CHECK(curve.trough_N == close_to(0.3).epsilon(0.06));
+    button.support = spring;
+    CHECK_FALSE(press_button(button).snaps);
+}
+
 TEST_CASE("button: the two-bar truss snaps at the closed form's force and travel, to 1e-9") {
     const ButtonCurve curve = press_button(truss_button(4e-3));
     REQUIRE(curve.snaps);

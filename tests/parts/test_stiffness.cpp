@@ -1,5 +1,7 @@
 #include <cmath>
 #include <doctest/doctest.h>
+#include <numbers>
+#include <utility>
 
 #include "parts/stiffness.h"
 #include "parts/thin_walls.h"
@@ -227,6 +229,33 @@ TEST_CASE("part stiffness: a box that holds a bar up to a plane holds it in that
     const double up_to_8_mm = held_up_to(8.0);
     CHECK(up_to_8_mm == close_to(held_up_to(8.5)).epsilon(1e-6));
     CHECK(up_to_8_mm < 0.95 * held_up_to(7.5));
+}
+
+TEST_CASE("part stiffness: a plate that is held outside of a hole in the region is free over the hole") {
+    const auto deflection_mm = [](const std::string& supports) {
+        const Part plate = parsed(Json::parse(R"({
+            "voxel_mm": 0.5, "size_mm": [20, 20, 1],
+            "materials": {"rubber": {"young_Pa": 2e6, "poisson": 0.3, "density_kg_per_m3": 1000}},
+            "shape": [{"add": {"all": true}, "material": "rubber"}],
+            "supports": [)" + supports + R"(],
+            "loads": {"middle": {"at_mm": [10, 10, 1], "patch_mm": 2, "direction": "-z", "force_N": 0.001}}})"));
+        return 1e3 * stiffness_of(plate, plate.loads[0], {{Method::voxels}, {}, 1e-6}).front().displacement_m;
+    };
+    const auto rim = [](double from_mm, double to_mm) {
+        return R"({"without": [{"all": true}, {"cylinder": {"from_mm": [10, 10, )" + std::to_string(from_mm) +
+               R"(], "to_mm": [10, 10, )" + std::to_string(to_mm) + R"(], "radius_mm": 8}}], "fix": "xyz"})";
+    };
+    const double clamped_mm = deflection_mm(rim(-1.0, 2.0));
+    const double D = 2e6 * 1e-9 / (12.0 * (1.0 - 0.09));  // N m, of the plate
+    CHECK(
+        clamped_mm ==
+        close_to(1e3 * 0.001 * 64e-6 / (16.0 * std::numbers::pi * D)).epsilon(0.2));  // P a^2 / (16 pi D); patch, steps
+    // where the hole ends at the plate's own faces
+    for (const auto& [from_mm, to_mm] : {std::pair{0.0, 2.0}, {-1.0, 1.0}, {0.0, 1.0}})
+        CHECK(deflection_mm(rim(from_mm, to_mm)) == close_to(clamped_mm));
+    // a plate on a box that touches it from below is held by that face
+    CHECK(deflection_mm(R"({"box": {"min_mm": [0, 0, -1], "max_mm": [20, 20, 0]}, "fix": "xyz"})") ==
+          close_to(deflection_mm(R"({"face": "zmin", "fix": "xyz"})")));
 }
 
 TEST_CASE("part stiffness: a force on air, nothing held and cells of half a voxel are refused") {
