@@ -1,6 +1,7 @@
 #pragma once
-// Detects whether a device really measures pressure. A pen or touch screen without a sensor reports a constant (0, 0.5,
-// 1) or nothing at all; the person should then be told, and be offered another way to press.
+// Detects whether a device really measures pressure, or the size of a touch. A pen or touch screen without a sensor reports a
+// constant (0, 0.5, 1; the same size for every touch) or nothing at all; the person should then be told, and be offered another
+// way to press.
 
 #include <array>
 #include <cstdint>
@@ -22,8 +23,11 @@ struct ToolPressure {
     std::int64_t with = 0;     // touching samples with pressure, without the first of each press
     double first = kMissing;   // pressure of the first such sample
     bool changed = false;
-    double touching_s = 0.0;   // time between samples of a touch, summed
-    double last_s = kMissing;  // time of the sample before; missing while nothing touches
+    double touching_s = 0.0;     // time between samples of a touch, summed
+    double last_s = kMissing;    // time of the sample before; missing while nothing touches
+    std::int64_t with_size = 0;  // touching samples with a contact ellipse, without the first of each press
+    double first_size_px[2] = {kMissing, kMissing};
+    bool size_changed = false;
 };
 
 struct PressureWatch {
@@ -36,6 +40,10 @@ void watch(const Sample& sample, PressureWatch& watch);
 
 // Returns the verdict so far; if a constant changes later, so does the verdict.
 PressureKind pressure_kind(const PressureWatch& watch, Tool tool);
+
+// Whether all touches of at least 5 s and 300 samples had the same size. (A size has few steps, so that a steady press may well
+// keep one for a second.)
+bool has_constant_size(const PressureWatch& watch, Tool tool);
 
 // Returns the value that never changed; NaN unless the kind is constant.
 double constant_pressure(const PressureWatch& watch, Tool tool);

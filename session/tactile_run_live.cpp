@@ -237,7 +237,7 @@ void fill_moment(const tactile::TactilePlan& plan, const StepRecord& record, Tac
     out.stopped = devices::latches(record.fault);
     out.lost = record.lost;
     const double delay_s = tactile::kStep_s + record.round_trip_s;
-    out.stiffness_delay_N_s_per_m = plan.arm ? plan.stiffness_N_per_m * delay_s : 0.0;
+    out.stiffness_delay_N_s_per_m = plan.arm ? plan.greatest_stiffness_N_per_m * delay_s : 0.0;
     if (arm_silent) out.stiffness_delay_N_s_per_m = TactileMoment::kNone;  // that of an answer that is over
     double sum_m2 = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(step.pins); ++i) {

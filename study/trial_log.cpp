@@ -12,8 +12,8 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("trial_type", r.trial_type, "",
           "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between; pause and "
           "resume: the person stopped the clock in between; device_gone: what the trial is done with was unplugged; "
-          "no_pressure: its pen or finger turned out to measure none; no_level: its touches lacked the level that the "
-          "profile reads; interrupted: it ended without finish");
+          "no_pressure: its pen or finger turned out to measure none, or all touches had one contact area; no_level: "
+          "its touches lacked the level that the profile reads; interrupted: it ended without finish");
     visit("block", r.block, "", "practice (nodules shown) or test (hidden)");
     visit("trial", r.trial, "", "number of the trial");
     visit("order_id", r.order_id, "", "row of the protocol's order");

@@ -1,6 +1,8 @@
 #include "tactile/plan.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "files/input_error.h"
@@ -80,18 +82,52 @@ void take_display(const scene::DisplayOptions& options, TactilePlan& plan) {
     plan.pin_rest_m = plan.pin_device ? plan.pin_device->rest_m : mechanics::rest_height_m(*plan.pins);
 }
 
-// Presses the middle of the tissue lightly.
+// The steepest of twenty steps up to the force limit.
+double greatest_stiffness_N_per_m(const Eigen::Vector2d& middle_m, const TactilePlan& plan) {
+    RendererWork work = make_work(plan.renderer);
+    constexpr int kSteps = 20;
+    double greatest = 0.0, force_N = 0.0, depth_m = 0.0;
+    for (int i = 1; i <= kSteps; ++i) {
+        const Press press = press_with_force(plan.renderer, middle_m, plan.options.force_limit_N * i / kSteps, work);
+        if (!(press.depth_m > depth_m)) continue;
+        greatest = std::max(greatest, (press.force_N - force_N) / (press.depth_m - depth_m));
+        force_N = press.force_N;
+        depth_m = press.depth_m;
+    }
+    return greatest;
+}
+
+// Presses the middle of the tissue lightly, then up to the force limit.
 void try_middle(const Eigen::Vector2d& middle_m, TactilePlan& plan) {
     RendererWork work = make_work(plan.renderer);
     const double force_N = 0.1 * plan.options.force_limit_N;
     const Press press = press_with_force(plan.renderer, middle_m, force_N, work);
     if (!(press.depth_m > 0.0) || !(press.force_N > 0.0)) return;
     plan.stiffness_N_per_m = press.force_N / press.depth_m;
+    plan.greatest_stiffness_N_per_m = greatest_stiffness_N_per_m(middle_m, plan);
     if (!plan.pins || plan.options.display->schedule == scene::PinSchedule::locked) return;
     Eigen::VectorXd sink_m(plan.pins->pin_m.cols());
     shape_m(plan.renderer, work, sink_m);
     plan.stroke_used_up_N =
         mechanics::stroke_used_up_at_N(*plan.pins, press.depth_m / press.force_N, sink_m / press.force_N);
+    if (plan.options.finger.contact == scene::FingerContact::parabola) return;
+    // the contact of the others widens with the force, and the shape grows less than it
+    const auto fits = [&](double at_N) {
+        const Press there = press_with_force(plan.renderer, middle_m, at_N, work);
+        shape_m(plan.renderer, work, sink_m);
+        mechanics::PinReport report;
+        Eigen::VectorXd height_m(sink_m.size());
+        mechanics::pins_from_sinks_m(*plan.pins, there.depth_m, sink_m, height_m, report);
+        return report.clipped == 0 && report.scale > 1.0 - 1e-9;
+    };
+    plan.stroke_used_up_N = std::numeric_limits<double>::infinity();
+    if (fits(plan.options.force_limit_N)) return;
+    double low_N = 0.0, high_N = plan.options.force_limit_N;
+    while (high_N - low_N > 1e-4 * plan.options.force_limit_N) {
+        const double middle_N = 0.5 * (low_N + high_N);
+        (fits(middle_N) ? low_N : high_N) = middle_N;
+    }
+    plan.stroke_used_up_N = high_N;
 }
 
 void add_plan_notes(TactilePlan& plan) {

@@ -38,7 +38,8 @@ struct TactilePlan {
     double pin_rest_m = 0.0;  // height of the pins before the first command
     // The force at which the display's stroke is used up in the middle of the tissue; infinity if it is not at the limit.
     double stroke_used_up_N = std::numeric_limits<double>::infinity();
-    double stiffness_N_per_m = 0.0;  // there
+    double stiffness_N_per_m = 0.0;           // there, of a light press
+    double greatest_stiffness_N_per_m = 0.0;  // there, of presses up to the force limit: what an arm may shake at
     std::vector<scene::StageText> stages;
     std::vector<std::string> notes;
 };

@@ -32,7 +32,8 @@ const char* range_text(double linearity) {
 files::Json warnings_json(const TactilePlan& plan, const DeviceFigures& devices) {
     files::Json out = files::Json::array();
     if (plan.arm) {
-        const std::string delay = devices::delay_warning(plan.stiffness_N_per_m, kStep_s + devices.round_trip_p50_s);
+        const std::string delay =
+            devices::delay_warning(plan.greatest_stiffness_N_per_m, kStep_s + devices.round_trip_p50_s);
         if (!delay.empty()) out.push_back(delay);
         if (devices.arm_rested > 0)
             out.push_back("the arm said " + std::to_string(devices.arm_rested) +

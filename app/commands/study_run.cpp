@@ -23,7 +23,9 @@ void run(const RunOptions& options) {
     if (json["of"] == 0 || json["participant"] == "") return;  // closed between two participants
     std::printf("%s: %s of %s trials done\n", json["participant"].get<std::string>().c_str(),
                 json["finished"].dump().c_str(), json["of"].dump().c_str());
-    if (json["finished"] < json["of"])
+    if (json["step"] == "withdrawn")
+        std::printf("  has withdrawn: this code takes part no more\n");
+    else if (json["finished"] < json["of"])
         std::printf("  the same command continues with the next one\n");
     else if (json["step"] != "done")
         std::printf("  the same command asks what is left\n");

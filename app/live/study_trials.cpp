@@ -49,13 +49,9 @@ bool is_device_here(const App& app) {
     return device_here(due_condition(*study_of(app.doing)).modality, app.notices.devices);
 }
 
-bool reads_pressure(const StudyScene& scene) {
-    return scene.plan->profile.level != calibration::LevelField::contact_area;
-}
-
 void note_pressure_of_tool(const App& app, StudyRun& run) {
     const bool on_tissue = run.progress.next && shows_tissue(run);
-    run.pressure = on_tissue ? pressure_verdict(due_condition(run).modality, reads_pressure(due_scene(run)),
+    run.pressure = on_tissue ? pressure_verdict(due_condition(run).modality, due_scene(run).plan->profile.level,
                                                 app.notices.devices, app.notices.devices_listed, app.pressure)
                              : PressureVerdict::not_needed;
     if (run.pressure == PressureVerdict::ready) run.pressure_must_vary = false;

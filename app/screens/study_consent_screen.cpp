@@ -20,10 +20,10 @@ bool wide_button(const char* label, char digit, const Gui& gui) {
 void draw_consent(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::kBeforeYouTakePart);
     const float below_px = (2.0f * kTarget_mm + 8.0f) * gui.mm();
-    ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
+    ImGui::BeginChild("consent", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     wrapped_text(run.protocol.consent);
-    end_scrolled("text", gui);
+    end_scrolled("consent", gui);
     if (wide_button(words::kAgree, '1', gui)) wishes.study = GiveConsent{true};
     if (wide_button(words::kDoNotAgree, '2', gui)) wishes.study = GiveConsent{false};
 }

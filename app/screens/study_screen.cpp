@@ -242,16 +242,18 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const float check_px =
         run.pressure == PressureVerdict::not_needed ? 0.0f : 2.0f * ImGui::GetTextLineHeightWithSpacing();
     const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm() + check_px;
-    ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
+    ImGui::BeginChild("instructions", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     wrapped_text(study::instructions_for(run.protocol, trial));
     if (run.protocol.count_told && !due_compares(run)) {
         gap(gui);
         wrapped_text(words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}));
     }
-    end_scrolled("text", gui);
+    end_scrolled("instructions", gui);
     if (run.pressure != PressureVerdict::not_needed) {
-        paragraph(words::filled(run.pressure == PressureVerdict::ready     ? words::kPressureReady
+        const bool by_area = due_scene(run).plan->profile.level == calibration::LevelField::contact_area;
+        paragraph(words::filled(by_area                                    ? words::kDeviceSameArea
+                                : run.pressure == PressureVerdict::ready   ? words::kPressureReady
                                 : run.pressure == PressureVerdict::untried ? words::kPressureUntried
                                                                            : words::kPressureMissing,
                                 {device_of(run)}));
@@ -263,7 +265,8 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
 void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
     const std::string device = device_of(run);
     const bool no_pressure = step.connected && run.pressure == PressureVerdict::no_pressure;
-    const char* text = no_pressure ? words::kDeviceNoPressure
+    const bool by_area = no_pressure && due_scene(run).plan->profile.level == calibration::LevelField::contact_area;
+    const char* text = no_pressure ? by_area ? words::kDeviceSameArea : words::kDeviceNoPressure
                        : step.here ? words::kDeviceIsBack
                                    : words::kDeviceMissing;
     title(step.no_level && step.here                     ? words::kNothingFelt
@@ -279,7 +282,9 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
     if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
         const bool finger = due_condition(run).modality == study::Modality::finger;
-        warning_paragraph(finger ? words::kNeedsFingerPressure : words::kNeedsPressure);
+        warning_paragraph(by_area  ? words::kNeedsContactArea
+                          : finger ? words::kNeedsFingerPressure
+                                   : words::kNeedsPressure);
         paragraph(run.on_tablet ? words::kLeaveAndContinue : words::kCloseAndContinue);
     } else if (!step.here || step.no_level) {
         if (!step.here && run.devices_note.empty()) warning_paragraph(words::filled(words::kTrialWaits, {device}));

@@ -67,6 +67,7 @@ void scroll_by_drag(const Gui& gui) {
 }
 
 void end_scrolled(const char* name, Gui& gui) {
+    if (ImGui::IsWindowAppearing()) ImGui::SetScrollY(0.0f);  // the next reader begins at the top
     scroll_by_drag(gui);
     const bool controls = ImGui::GetCurrentWindow()->DC.NavLayersActiveMaskNext != 0;
     if (!controls && ImGui::GetScrollMaxY() > 0.0f) {

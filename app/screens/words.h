@@ -625,6 +625,11 @@ inline constexpr const char* kNeedsPressure =
 inline constexpr const char* kNeedsFingerPressure =
     "This trial needs a screen that measures how hard a finger presses. Press anywhere, lightly, then hard; as soon as "
     "the pressure varies, the trial can start.";
+inline constexpr const char* kDeviceSameArea = "The {} always has the same contact area";
+inline constexpr const char* kNeedsContactArea =
+    "This trial needs a screen that measures how large the contact of a finger is. Press anywhere, lightly, then hard; "
+    "as "
+    "soon as the area varies, the trial can start.";
 inline constexpr const char* kPressureReady = "Device check: the {} measures pressure.";
 inline constexpr const char* kPressureUntried =
     "Device check: press with the {} here, lightly, then hard, to try its pressure.";

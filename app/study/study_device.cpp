@@ -17,12 +17,14 @@ bool tool_allowed(study::Modality modality, platform::Tool tool) {
     }
 }
 
-PressureVerdict pressure_verdict(study::Modality modality, bool reads_pressure,
+PressureVerdict pressure_verdict(study::Modality modality, calibration::LevelField reads,
                                  const std::vector<platform::PointerDevice>& devices, bool devices_listed,
                                  const platform::PressureWatch& pressure) {
     const bool finger = modality == study::Modality::finger;
-    if ((modality != study::Modality::pen && !finger) || !reads_pressure) return PressureVerdict::not_needed;
+    if (modality != study::Modality::pen && !finger) return PressureVerdict::not_needed;
     const platform::Tool tool = finger ? platform::Tool::finger : platform::Tool::pen;
+    if (reads == calibration::LevelField::contact_area)
+        return has_constant_size(pressure, tool) ? PressureVerdict::no_pressure : PressureVerdict::not_needed;
     switch (platform::pressure_kind(pressure, tool)) {
         case platform::PressureKind::varies:
             return PressureVerdict::ready;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "calibration/profile.h"
 #include "platform/pressure.h"
 #include "platform/window.h"
 #include "study/protocol.h"
@@ -11,14 +12,15 @@ namespace palpa::app {
 
 bool tool_allowed(study::Modality modality, platform::Tool tool);
 
-// What the device check says of the pressure of a trial's pen, or finger.
+// What the device check says of the pressure of a trial's pen, or finger; or of a finger's contact area, if the profile reads
+// that.
 enum class PressureVerdict : std::uint8_t {
-    not_needed,  // the trial is not done with a pen or a finger, or its profile reads no pressure
+    not_needed,  // the trial is not done with a pen or a finger, or its profile reads an area that is not known to be constant
     untried,     // a pen or finger that may measure pressure has not pressed yet
     ready,       // its pressure varies
-    no_pressure  // none measures pressure; many screens send the same number for every touch
+    no_pressure  // none measures what is read; many screens send the same number for every touch
 };
-PressureVerdict pressure_verdict(study::Modality modality, bool reads_pressure,
+PressureVerdict pressure_verdict(study::Modality modality, calibration::LevelField reads,
                                  const std::vector<platform::PointerDevice>& devices, bool devices_listed,
                                  const platform::PressureWatch& pressure);
 

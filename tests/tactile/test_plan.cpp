@@ -81,8 +81,33 @@ TEST_CASE("tactile plan: the stages say at which force the stroke is used up") {
     const TactileScene locked(R"({"display": {"schedule": "locked"}})");
     CHECK_FALSE(std::isfinite(locked.tactile_plan()->stroke_used_up_N));  // no shape is shown
     // ten times as stiff: at a tenth of the depth per newton the stroke lasts ten times as long
+    CHECK(plan->greatest_stiffness_N_per_m == close_to(plan->stiffness_N_per_m).epsilon(1e-6));  // linear
     const TactileScene stiff(kArmAndPins, 10.0);
     CHECK(stiff.tactile_plan()->stroke_used_up_N == close_to(10.0 * plan->stroke_used_up_N).epsilon(1e-6));
+}
+
+TEST_CASE("tactile plan: under a soft pad, too, the stroke is used up where pins begin to be cut off") {
+    for (const char* zero : {"top", "skel"}) {
+        CAPTURE(zero);
+        const TactileScene slab(
+            std::string(R"({"finger": {"contact": "pad", "diameter_mm": 16}, "display": {"zero": ")") + zero +
+            R"("}})");
+        const auto plan = slab.tactile_plan();
+        REQUIRE(plan->stroke_used_up_N < plan->options.force_limit_N);
+        tactile::RendererWork work = tactile::make_work(plan->renderer);
+        Eigen::VectorXd height_m(plan->pins->pin_m.cols());
+        const auto cut_off = [&](double force_N) {
+            const tactile::Press press =
+                tactile::press_with_force(plan->renderer, slab.plan->area.centre_m, force_N, work);
+            Eigen::VectorXd sink_m(height_m.size());
+            tactile::shape_m(plan->renderer, work, sink_m);
+            mechanics::PinReport report;
+            mechanics::pins_from_sinks_m(*plan->pins, press.depth_m, sink_m, height_m, report);
+            return report.clipped;
+        };
+        CHECK(cut_off(0.97 * plan->stroke_used_up_N) == 0);
+        CHECK(cut_off(1.03 * plan->stroke_used_up_N) > 0);
+    }
 }
 
 TEST_CASE("tactile plan: a scene without the key is refused") {
@@ -99,7 +124,8 @@ TEST_CASE("tactile plan: a force curve answers depth with force, with the displa
     tactile::LoopInput in;
     in.touch = {0.0, 0.0, 0.0, 1.5e-3, 0.0, true};
     CHECK(tactile::loop_command(plan, in, state).force_N == close_to(1.25));
-    in.touch.depth_m = 5e-3;  // beyond the curve
+    CHECK(plan.greatest_stiffness_N_per_m == close_to(1500.0));  // of the second millimetre
+    in.touch.depth_m = 5e-3;                                     // beyond the curve
     CHECK(tactile::loop_command(plan, in, state).held);
     CHECK(contains(plan.stages.front().fidelity, "a force curve"));
     options.display = scene::DisplayOptions{};

@@ -146,6 +146,12 @@ TEST_CASE("keys: a list of keys that does not fit scrolls") {
     CHECK(scrolled() < all_px);
     press(desk, SDLK_HOME);
     CHECK(scrolled() == 0.0f);
+    press(desk, SDLK_END);
+    desk.app.view.help = false;
+    live_frames(desk, 6);
+    desk.app.view.help = true;
+    live_frames(desk, 6);
+    CHECK(scrolled() == 0.0f);  // opened again, a page begins at its top
 }
 
 TEST_CASE("keys: devices that F12 stopped are released in the next trial too") {
