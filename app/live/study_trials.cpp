@@ -51,9 +51,11 @@ bool is_device_here(const App& app) {
 
 void note_pressure_of_tool(const App& app, StudyRun& run) {
     const bool on_tissue = run.progress.next && shows_tissue(run);
-    run.pressure = on_tissue ? pressure_verdict(due_condition(run).modality, due_scene(run).plan->profile.level,
-                                                app.notices.devices, app.notices.devices_listed, app.pressure)
-                             : PressureVerdict::not_needed;
+    run.pressure = on_tissue
+                       ? pressure_verdict(due_condition(run).modality,
+                                          due_scene(run).plan->profile.level == calibration::LevelField::contact_area,
+                                          app.notices.devices, app.notices.devices_listed, app.pressure)
+                       : PressureVerdict::not_needed;
     if (run.pressure == PressureVerdict::ready) run.pressure_must_vary = false;
     if (run.pressure == PressureVerdict::untried && run.pressure_must_vary) run.pressure = PressureVerdict::no_pressure;
 }

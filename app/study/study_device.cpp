@@ -17,13 +17,13 @@ bool tool_allowed(study::Modality modality, platform::Tool tool) {
     }
 }
 
-PressureVerdict pressure_verdict(study::Modality modality, calibration::LevelField reads,
+PressureVerdict pressure_verdict(study::Modality modality, bool reads_area,
                                  const std::vector<platform::PointerDevice>& devices, bool devices_listed,
                                  const platform::PressureWatch& pressure) {
     const bool finger = modality == study::Modality::finger;
     if (modality != study::Modality::pen && !finger) return PressureVerdict::not_needed;
     const platform::Tool tool = finger ? platform::Tool::finger : platform::Tool::pen;
-    if (reads == calibration::LevelField::contact_area)
+    if (reads_area)
         return has_constant_size(pressure, tool) ? PressureVerdict::no_pressure : PressureVerdict::not_needed;
     switch (platform::pressure_kind(pressure, tool)) {
         case platform::PressureKind::varies:

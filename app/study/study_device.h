@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "calibration/profile.h"
 #include "platform/pressure.h"
 #include "platform/window.h"
 #include "study/protocol.h"
@@ -20,7 +19,8 @@ enum class PressureVerdict : std::uint8_t {
     ready,       // its pressure varies
     no_pressure  // none measures what is read; many screens send the same number for every touch
 };
-PressureVerdict pressure_verdict(study::Modality modality, calibration::LevelField reads,
+// reads_area: the trial's profile reads the contact area, not the pressure.
+PressureVerdict pressure_verdict(study::Modality modality, bool reads_area,
                                  const std::vector<platform::PointerDevice>& devices, bool devices_listed,
                                  const platform::PressureWatch& pressure);
 

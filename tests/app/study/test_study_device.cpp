@@ -7,14 +7,13 @@ using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::study;
 using namespace palpa::app;
-using palpa::calibration::LevelField;
 
 TEST_CASE("study device: a pen's trial, and a finger's, needs a pressure that varies, or might") {
     for (const auto& [modality, tool] : {std::pair{Modality::pen, Tool::pen}, {Modality::finger, Tool::finger}}) {
         CAPTURE(name_of(modality));
         const PointerDevice sensing{1, "Sensing", tool, true}, blunt{1, "Blunt", tool, false};
         const auto verdict = [&](const PointerDevice& device, const PressureWatch& pressure) {
-            return pressure_verdict(modality, LevelField::pressure, {device}, true, pressure);
+            return pressure_verdict(modality, false, {device}, true, pressure);
         };
         const auto pressed = [&](double step) {
             PressureWatch out;
@@ -32,11 +31,10 @@ TEST_CASE("study device: a pen's trial, and a finger's, needs a pressure that va
         CHECK(verdict(blunt, {}) == PressureVerdict::no_pressure);
         CHECK(verdict(sensing, pressed(0.0)) == PressureVerdict::no_pressure);
         CHECK(verdict(sensing, pressed(0.001)) == PressureVerdict::ready);
-        CHECK(pressure_verdict(modality, LevelField::contact_area, {blunt}, true, {}) == PressureVerdict::not_needed);
-        CHECK(pressure_verdict(modality, LevelField::pressure, {}, false, {}) == PressureVerdict::untried);
+        CHECK(pressure_verdict(modality, true, {blunt}, true, {}) == PressureVerdict::not_needed);
+        CHECK(pressure_verdict(modality, false, {}, false, {}) == PressureVerdict::untried);
         const PointerDevice mouse{2, "Mouse", Tool::mouse, false};
-        CHECK(pressure_verdict(Modality::mouse, LevelField::pressure, {mouse}, true, pressed(0.0)) ==
-              PressureVerdict::not_needed);
+        CHECK(pressure_verdict(Modality::mouse, false, {mouse}, true, pressed(0.0)) == PressureVerdict::not_needed);
     }
 }
 
@@ -51,7 +49,7 @@ TEST_CASE("study device: a finger's trial by contact area is refused where all t
             sample.width_px = sample.height_px = 20.0 + step_px * (i / 100);
             watch(sample, seen);
         }
-        return pressure_verdict(Modality::finger, LevelField::contact_area, {}, false, seen);
+        return pressure_verdict(Modality::finger, true, {}, false, seen);
     };
     CHECK(verdict(0.0, 6.0) == PressureVerdict::no_pressure);
     CHECK(verdict(0.0, 2.0) == PressureVerdict::not_needed);  // a steady press
