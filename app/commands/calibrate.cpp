@@ -3,6 +3,7 @@
 #include "calibration/calibrate.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -52,6 +53,7 @@ struct FitArguments {
     calibration::DeviceNames device;
     bool keep_lag = false;
     bool any_force = false;
+    bool full_area_given = false;
     bool json = false;
 };
 
@@ -63,6 +65,23 @@ std::optional<Enum> parsed(const std::string& name, std::initializer_list<Enum> 
     return std::nullopt;  // auto
 }
 
+constexpr auto kLevels = {calibration::LevelField::pressure, calibration::LevelField::pressure_raw,
+                          calibration::LevelField::contact_area};
+
+// `calibrate record` keeps beside its points what their levels are; options take precedence.
+void take_session(const FitArguments& arguments, calibration::CalibrateOptions& options) {
+    const std::filesystem::path data = arguments.data;
+    const std::filesystem::path file = data.parent_path() / "session.json";
+    if (data.filename() != "points.csv" || !std::filesystem::exists(file)) return;
+    const files::Json session = files::read_json(file);
+    if (!session.is_object()) return;
+    const files::Json level = session.value("level", files::Json());
+    const files::Json area = session.value("full_contact_area_px2", files::Json());
+    if (!options.level && level.is_string()) options.level = parsed(level.get<std::string>(), kLevels);
+    const bool by_area = options.level == calibration::LevelField::contact_area;
+    if (by_area && !arguments.full_area_given && area.is_number()) options.full_contact_area_px2 = area.get<double>();
+}
+
 calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
     calibration::CalibrateOptions options = arguments.options;
     options.model =
@@ -72,8 +91,8 @@ calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
     options.robust = arguments.robust == "none"    ? calibration::Robust::none
                      : arguments.robust == "huber" ? calibration::Robust::huber
                                                    : calibration::Robust::tukey;
-    options.level = parsed(arguments.level, {calibration::LevelField::pressure, calibration::LevelField::pressure_raw,
-                                             calibration::LevelField::contact_area});
+    options.level = parsed(arguments.level, kLevels);
+    take_session(arguments, options);
     options.remove_lag = !arguments.keep_lag;
     constexpr int kFewestFits = 100;  // fewer give an interval that may not even hold the curve itself
     if (options.bootstrap_fits > 0 && options.bootstrap_fits < kFewestFits) {
@@ -191,6 +210,7 @@ void add_fit(CLI::App& calibrate) {
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([command, arguments] {
         refuse_unused(*command, "--seed", arguments->options.bootstrap_fits > 0, "--bootstrap above 0");
+        arguments->full_area_given = command->count("--full-contact-area-px2") > 0;
         refuse_unused(*command, "--full-contact-area-px2", arguments->level == "contact_area", "--level contact_area");
         fit(*arguments);
     });
@@ -275,11 +295,18 @@ void compare(const CompareProfilesArguments& arguments) {
     double greatest = 0.0;
     double at = 0.0;
     std::int64_t ignored = 0;
+    // each profile over its own range, so that counts can be compared with levels of 0 to 1; areas at equal areas
+    const bool areas =
+        a.level == calibration::LevelField::contact_area && b.level == calibration::LevelField::contact_area;
+    const double full_px2 = std::min(a.full_contact_area_px2, b.full_contact_area_px2);
+    const auto force_at = [&](const calibration::Profile& profile, double s) {
+        const double part = areas ? s * full_px2 / profile.full_contact_area_px2 : s;
+        const double level = profile.level_lowest + part * (profile.level_highest - profile.level_lowest);
+        return calibration::force_N(profile, level, ignored);
+    };
     for (int i = 0; i <= kPlaces; ++i) {
-        // each profile over its own range, so that counts can be compared with levels of 0 to 1
         const double s = static_cast<double>(i) / kPlaces;
-        const double F_a = calibration::force_N(a, a.level_lowest + s * (a.level_highest - a.level_lowest), ignored);
-        const double F_b = calibration::force_N(b, b.level_lowest + s * (b.level_highest - b.level_lowest), ignored);
+        const double F_a = force_at(a, s), F_b = force_at(b, s);
         share.push_back(s);
         a_N.push_back(F_a);
         b_N.push_back(F_b);

@@ -91,6 +91,34 @@ TEST_CASE("calibrate fit: exact points give the paper's curve, a profile that th
     CHECK(run.status == 0);
 }
 
+TEST_CASE("calibrate fit: a session says what its levels are; profiles of areas are compared at equal areas") {
+    const TemporaryFolder folder;
+    // one finger, A = 2200 px2 (F / 1 N)^(2/3), as shares of two areas
+    for (const double full_px2 : {8000.0, 12000.0}) {
+        const auto session = folder / number_text(full_px2);
+        std::filesystem::create_directory(session);
+        std::string text = "level,force_N\n";
+        for (int i = 1; i <= 40; ++i) {
+            const double force_N = 0.1 * i;
+            text += number_text(2200.0 * std::pow(force_N, 2.0 / 3.0) / full_px2) + "," + number_text(force_N) + "\n";
+        }
+        write_text_atomically(session / "points.csv", text);
+        write_text_atomically(session / "session.json",
+                              R"({"sensor": "netft", "level": "contact_area", "full_contact_area_px2": )" +
+                                  number_text(full_px2) + "}\n");
+        const Called fit = calibrate("fit " + (session / "points.csv").string() + " --model power -o " +
+                                     (session / "p.json").string());
+        CHECK(fit.status == 0);
+        const Json profile = read_json(session / "p.json");
+        CHECK(profile["level"] == "contact_area");
+        CHECK(profile["full_contact_area_px2"] == full_px2);
+    }
+    const auto profile = [&](const char* full) { return (folder / full / "p.json").string(); };
+    const Called compared = calibrate("compare " + profile("8000") + " " + profile("12000") + " --json");
+    REQUIRE(compared.status == 0);
+    CHECK(Json::parse(compared.out)["median_relative_difference"].get<double>() < 0.02);
+}
+
 TEST_CASE("calibrate fit: figures are drawn in all three kinds") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "d.csv", touchpad());
