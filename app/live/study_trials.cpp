@@ -63,7 +63,7 @@ void note_pressure_of_tool(const App& app, StudyRun& run) {
 // A trial begins only with its device, and a pen's or a finger's trial only with one that measures pressure.
 bool may_begin(const App& app) {
     const StudyRun& run = *study_of(app.doing);
-    return is_device_here(app) && run.pressure != PressureVerdict::no_pressure && run.devices_note.empty();
+    return is_device_here(app) && !refuses(run.pressure) && run.devices_note.empty();
 }
 
 // Why a trial says nothing about the person: its device is gone, or turned out to measure no pressure, its touches lack
@@ -216,8 +216,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     }
     if (!trial_goes_on(run)) return;
     note_pressure_of_tool(app, run);
-    if (run.pressure == PressureVerdict::no_pressure)
-        return interrupt_study_trial(Interruption::no_pressure, window, app);
+    if (refuses(run.pressure)) return interrupt_study_trial(Interruption::no_pressure, window, app);
     if (gives_no_force(app, kFewWithoutLevel)) return interrupt_study_trial(Interruption::no_level, window, app);
     if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
     if (!is_device_here(app) || devices_failed(window.now_s(), app))

@@ -251,11 +251,10 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     }
     end_scrolled("instructions", gui);
     if (run.pressure != PressureVerdict::not_needed) {
-        const bool by_area = due_scene(run).plan->profile.level == calibration::LevelField::contact_area;
-        paragraph(words::filled(by_area                                    ? words::kDeviceSameArea
-                                : run.pressure == PressureVerdict::ready   ? words::kPressureReady
-                                : run.pressure == PressureVerdict::untried ? words::kPressureUntried
-                                                                           : words::kPressureMissing,
+        paragraph(words::filled(run.pressure == PressureVerdict::ready       ? words::kPressureReady
+                                : run.pressure == PressureVerdict::untried   ? words::kPressureUntried
+                                : run.pressure == PressureVerdict::same_area ? words::kDeviceSameArea
+                                                                             : words::kPressureMissing,
                                 {device_of(run)}));
     }
     if (forward(words::kStart, gui)) wishes.study = BeginStep{};
@@ -264,8 +263,8 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
 
 void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
     const std::string device = device_of(run);
-    const bool no_pressure = step.connected && run.pressure == PressureVerdict::no_pressure;
-    const bool by_area = no_pressure && due_scene(run).plan->profile.level == calibration::LevelField::contact_area;
+    const bool no_pressure = step.connected && refuses(run.pressure);
+    const bool by_area = run.pressure == PressureVerdict::same_area;
     const char* text = no_pressure ? by_area ? words::kDeviceSameArea : words::kDeviceNoPressure
                        : step.here ? words::kDeviceIsBack
                                    : words::kDeviceMissing;

@@ -23,8 +23,7 @@ PressureVerdict pressure_verdict(study::Modality modality, bool reads_area,
     const bool finger = modality == study::Modality::finger;
     if (modality != study::Modality::pen && !finger) return PressureVerdict::not_needed;
     const platform::Tool tool = finger ? platform::Tool::finger : platform::Tool::pen;
-    if (reads_area)
-        return has_constant_size(pressure, tool) ? PressureVerdict::no_pressure : PressureVerdict::not_needed;
+    if (reads_area) return has_constant_size(pressure, tool) ? PressureVerdict::same_area : PressureVerdict::not_needed;
     switch (platform::pressure_kind(pressure, tool)) {
         case platform::PressureKind::varies:
             return PressureVerdict::ready;

@@ -15,10 +15,14 @@ bool tool_allowed(study::Modality modality, platform::Tool tool);
 // that.
 enum class PressureVerdict : std::uint8_t {
     not_needed,  // the trial is not done with a pen or a finger, or its profile reads an area that is not known to be constant
-    untried,     // a pen or finger that may measure pressure has not pressed yet
-    ready,       // its pressure varies
-    no_pressure  // none measures what is read; many screens send the same number for every touch
+    untried,      // a pen or finger that may measure pressure has not pressed yet
+    ready,        // its pressure varies
+    no_pressure,  // none measures pressure; many screens send the same number for every touch
+    same_area     // the contact area is read, and all touches have the same
 };
+inline bool refuses(PressureVerdict verdict) {
+    return verdict == PressureVerdict::no_pressure || verdict == PressureVerdict::same_area;
+}
 // reads_area: the trial's profile reads the contact area, not the pressure.
 PressureVerdict pressure_verdict(study::Modality modality, bool reads_area,
                                  const std::vector<platform::PointerDevice>& devices, bool devices_listed,

@@ -51,7 +51,7 @@ TEST_CASE("study device: a finger's trial by contact area is refused where all t
         }
         return pressure_verdict(Modality::finger, true, {}, false, seen);
     };
-    CHECK(verdict(0.0, 6.0) == PressureVerdict::no_pressure);
+    CHECK(verdict(0.0, 6.0) == PressureVerdict::same_area);
     CHECK(verdict(0.0, 2.0) == PressureVerdict::not_needed);  // a steady press
     CHECK(verdict(1.0, 6.0) == PressureVerdict::not_needed);
 }
