@@ -34,6 +34,8 @@ test('over a slow network the page says how much has come', async () => {
         await devtools.send('Network.enable');
         await devtools.send('Network.emulateNetworkConditions', {offline: false, latency: 20, downloadThroughput: 1e6, uploadThroughput: 1e6});
         await page.addInitScript(() => {
+            // the emulated network is the page's: a service worker would have everything at once
+            navigator.serviceWorker.register = () => Promise.reject(new Error('later'));
             window.shares = [];
             addEventListener('DOMContentLoaded', () => {
                 const text = document.getElementById('message-text');
