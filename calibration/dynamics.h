@@ -17,7 +17,7 @@ namespace palpa::calibration {
 //
 // with any g of the level and d = +1 pressing, -1 releasing, rows weighted by the sensor's noise beside F. Returns nothing if it cannot be determined: no times, no release
 // (a steady ramp fits any lag), too few samples, or an end of the search. A loop whose share of the force varies along the
-// press looks like a lag where all presses have one speed.
+// press looks like a lag, less so where presses have different speeds (figures in docs/calibration.md).
 std::optional<double> lag_s(const CalibrationRows& rows, LevelRange range);
 
 // Returns the rows with the force that acted when the level was formed, F(t - lag), linear between samples. Rows at the

@@ -79,7 +79,8 @@ void take_session(const FitArguments& arguments, calibration::CalibrateOptions& 
     const files::Json area = session.value("full_contact_area_px2", files::Json());
     if (!options.level && level.is_string()) options.level = parsed(level.get<std::string>(), kLevels);
     const bool by_area = options.level == calibration::LevelField::contact_area;
-    if (by_area && !arguments.full_area_given && area.is_number()) options.full_contact_area_px2 = area.get<double>();
+    if (by_area && !arguments.full_area_given && area.is_number() && area > 0.0)
+        options.full_contact_area_px2 = area.get<double>();
 }
 
 calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
@@ -178,8 +179,10 @@ void add_fit(CLI::App& calibrate) {
         ->check(one_of({"none", "huber", "tukey"}))
         ->capture_default_str();
     command
-        ->add_option("--level", arguments->level,
-                     "field of a sample that is the level (auto: pressure, or pressure_raw if levels exceed 1)")
+        ->add_option(
+            "--level", arguments->level,
+            "field of a sample that is the level (auto: that of a recorded session, else pressure, or pressure_raw if "
+            "levels exceed 1)")
         ->check(one_of({"auto", "pressure", "pressure_raw", "contact_area"}))
         ->capture_default_str();
     command
@@ -350,7 +353,8 @@ void compare(const CompareProfilesArguments& arguments) {
 
 void add_compare(CLI::App& calibrate) {
     auto arguments = std::make_shared<CompareProfilesArguments>();
-    CLI::App* command = calibrate.add_subcommand("compare", "Compare two profiles, each over its own range of levels");
+    CLI::App* command = calibrate.add_subcommand(
+        "compare", "Compare two profiles, each over its own range of levels; of contact areas at equal areas");
     command->add_option("A", arguments->a, "profile JSON")->required();
     command->add_option("B", arguments->b, "profile JSON")->required();
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
