@@ -1,6 +1,8 @@
 #include "parts/compare.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -9,6 +11,8 @@
 
 namespace palpa::parts {
 namespace {
+
+constexpr double kSameWay = 0.9999;  // cosine of the angle between two loads that are the same
 
 const PartLoad* load_of(const Part& part, const std::string& name) {
     for (const PartLoad& load : part.loads) {
@@ -62,6 +66,15 @@ PartComparison compare_parts(const Part& a, const Part& b, const std::string& lo
     if (of_b.force_N != of_a.force_N) {
         throw files::bad_input(b.file, "loads." + out.load + ".force_N", files::number_text(of_b.force_N),
                                files::number_text(of_a.force_N) + ", as in " + a.file);
+    }
+    const mechanics::Point &way_a = of_a.direction, &way_b = of_b.direction;
+    if (std::abs(std::inner_product(way_a.begin(), way_a.end(), way_b.begin(), 0.0)) < kSameWay) {
+        const auto text = [](const mechanics::Point& way) {
+            return "(" + files::short_number(way[0]) + ", " + files::short_number(way[1]) + ", " +
+                   files::short_number(way[2]) + ")";
+        };
+        throw files::bad_input(b.file, "loads." + out.load + ".direction", text(way_b),
+                               text(way_a) + " or against it, as in " + a.file);
     }
     out.a = design_of(a, of_a, options);
     out.b = design_of(b, of_b, options);

@@ -37,7 +37,8 @@ struct PartComparison {
 };
 
 // Compares the parts under the load of that name ("": the only one that both have), by one method. Throws InputError as
-// stiffness_of() does, for a load that one of them lacks, for loads of different forces, and if the method has no answer.
+// stiffness_of() does, for a load that one of them lacks, for loads of different forces or directions, and if
+// the method has no answer.
 PartComparison compare_parts(const Part& a, const Part& b, const std::string& load, const StiffnessOptions& options);
 
 }  // namespace palpa::parts

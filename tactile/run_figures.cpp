@@ -87,8 +87,9 @@ files::Json figures_json(const TactilePlan& plan, const StepFigures& steps, cons
     json["mismatch_ms"] = files::number_or_null(1e3 * lag_s(mismatch));
     json["clipped_share"] = plan.pins ? files::Json(steps.clipped_share / pressed) : files::Json(nullptr);
     json["least_shape_scale"] = steps.least_scale;
-    json["linear_range"] = range_text(steps.linearity);
-    json["linearity"] = steps.linearity;
+    const bool is_linear = plan.renderer.compliance != nullptr;  // other tissues have no such range to leave
+    json["linear_range"] = is_linear ? files::Json(range_text(steps.linearity)) : files::Json(nullptr);
+    json["linearity"] = is_linear ? files::Json(steps.linearity) : files::Json(nullptr);
     json["over_edge_steps"] = steps.over_edge_steps;
     json["inexact_steps"] = steps.inexact_steps;
     json["step_us"] = {{"p50", files::number_or_null(devices.step_p50_us)},

@@ -144,7 +144,12 @@ void bench_pens(const PensOptions& options) {
         std::size_t first_fitted;
         bool silent_too;
     };
-    files::Json json{{"sessions", sessions.size()}, {"splits", files::Json::array()}};
+    files::Json json{{"sessions", sessions.size()},
+                     {"sessions_left_out", all.size() - sessions.size()},
+                     {"splits", files::Json::array()}};
+    if (!options.json && sessions.size() < all.size())
+        std::printf("%zu of %zu sessions have fewer than %zu points and are left out\n", all.size() - sessions.size(),
+                    all.size(), kEnough);
     for (const Split& split :
          {Split{"fitted to rows 2, 4, ..., judged on rows 1, 3, ... with a level above 0", 1, false},
           Split{"the same, rows with level 0 judged too", 1, true},

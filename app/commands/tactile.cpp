@@ -167,7 +167,8 @@ void print_tactile(const files::Json& result) {
                     result["reached_by"].get<std::string>().c_str());
     if (const auto beyond = result["over_edge_steps"].get<std::int64_t>(); beyond > 0)
         std::printf("  the finger reached over the edge of the tissue in %s\n", files::counted(beyond, "step").c_str());
-    std::printf("  linear range: %s\n", result["linear_range"].get<std::string>().c_str());
+    if (!result["linear_range"].is_null())
+        std::printf("  linear range: %s\n", result["linear_range"].get<std::string>().c_str());
     for (const auto& fault : result["faults"])
         std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),
                     fault["times"].dump().c_str());

@@ -100,13 +100,17 @@ void check_force(const CharacteriseOptions& options, const CharacterisedTissue& 
                  const devices::ArmDevice& device) {
     const double limit_N = devices::limits_of(&device, nullptr, options.force_limit_N).force_N;
     for (const double stiffness : options.stiffness_N_per_mm) {
-        if (law_of(1e3 * stiffness, tissue)(1e-3 * options.depth_mm) < 0.999 * limit_N) continue;
-        throw files::bad_input("--stiffness-N-per-mm", "",
-                               files::short_number(stiffness) + " at a depth of " +
-                                   files::short_number(options.depth_mm) + " mm, where the force limit of " +
-                                   files::short_number(limit_N) + " N holds the force",
-                               "a softer tissue, a greater --force-limit-N, or a --depth-mm below " +
-                                   files::short_number(limit_N / stiffness));
+        const auto law = law_of(1e3 * stiffness, tissue);
+        const auto held = [&](double depth_mm) { return !(law(1e-3 * depth_mm) < 0.999 * limit_N); };
+        if (!held(options.depth_mm)) continue;
+        double free_mm = 0.0;  // the tissue need not be straight: where its own curve meets the limit
+        for (double step_mm = 0.5 * options.depth_mm; step_mm > 1e-3 * options.depth_mm; step_mm *= 0.5)
+            if (!held(free_mm + step_mm)) free_mm += step_mm;
+        throw files::bad_input(
+            "--stiffness-N-per-mm", "",
+            files::short_number(stiffness) + " at a depth of " + files::short_number(options.depth_mm) +
+                " mm, where the force limit of " + files::short_number(limit_N) + " N holds the force",
+            "a softer tissue, a greater --force-limit-N, or a --depth-mm of at most " + files::short_number(free_mm));
     }
 }
 

@@ -50,7 +50,8 @@ void draw_force_lines(const TactileShown& tactile, float column_px) {
         value_line(words::kForceSensor, in_unit(moment.sensor_N, 1.0, 2, "N"), column_px);
     value_line(words::kDepth, in_unit(moment.depth_m, 1e3, 2, "mm"), column_px);
     value_line(words::kHoldLine, moment.held ? words::kHeldNow : "-", column_px);
-    value_line(words::kLinearRange, range_words(moment.linearity), column_px);
+    // 0 at rest, and for tissues that are no linear ones
+    value_line(words::kLinearRange, moment.linearity > 0.0 ? range_words(moment.linearity) : "-", column_px);
     if (moment.over_edge) warning_paragraph(words::kOverEdge);
 }
 

@@ -68,6 +68,9 @@ TEST_CASE(
     CHECK(test::contains(refused(json, "head", Method::voxels), "found 'head', expected one of tip, patch"));
     json["loads"]["tip"]["force_N"] = 2;
     CHECK(test::contains(refused(json, "tip", Method::voxels), "loads.tip.force_N: found 2, expected 1"));
+    json["loads"]["tip"]["force_N"] = 1;
+    json["loads"]["tip"]["direction"] = {1, 0, 1};
+    CHECK(test::contains(refused(json, "tip", Method::voxels), "loads.tip.direction: found (0.7071, 0, 0.7071)"));
     json.erase("loads");
     CHECK(test::contains(refused(json, "", Method::voxels), "no load of a name"));
     json = small_part();

@@ -206,6 +206,7 @@ TEST_CASE("bench pens: auto predicts left-out points of 94 real sessions within 
     REQUIRE(bench.status == 0);
     const Json json = parse_json(bench.out, "stdout");
     CHECK(json["sessions"] == 94);
+    CHECK(json["sessions_left_out"] == 0);
     for (const std::size_t split : {0u, 2u}) {
         CAPTURE(split);
         const Json& best = json["splits"][split]["curves"].back();

@@ -159,6 +159,26 @@ TEST_CASE("characterise and identify: what cannot be is refused with 2") {
             "--depth-mm: found 40, expected at most");
 }
 
+TEST_CASE("characterise: the depth that a refusal names is taken, also where the tissue stiffens on the way") {
+    const SlabScene slab;
+    files::write_text_atomically(slab.file("curved.json"),
+                                 R"({"name": "curved", "tactile": {"arm": {}}, "tissue": {"force_curve":
+                                     {"stiffness_N_per_mm": 0.3, "growth_mm": 3, "greatest_depth_mm": 20}}})");
+    const std::string characterise =
+        "characterise " + slab.file("curved.json") + " --simulate --virtual-time --stiffness-N-per-mm 2 --depth-mm ";
+    const Called refused = slab.tactile(characterise + "9");
+    CHECK(refused.status == 2);
+    const std::string before = "a --depth-mm of at most ";
+    const std::size_t at = refused.err.find(before);
+    REQUIRE(at != std::string::npos);
+    const double deepest_mm = std::stod(refused.err.substr(at + before.size()));
+    CAPTURE(deepest_mm);
+    CHECK(deepest_mm > 1.0);
+    CHECK(deepest_mm < 7.5);  // where a straight tissue of 2 N/mm would reach the 15 N
+    CHECK(slab.tactile(characterise + std::to_string(deepest_mm)).status == 0);
+    CHECK(slab.tactile(characterise + std::to_string(1.02 * deepest_mm)).status == 2);
+}
+
 TEST_CASE("identify: an arm that does not answer is named with its address") {
     const SlabScene slab;
     files::Json arm = files::read_json(PALPA_SOURCE_DIR "/assets/devices/arm.json");
