@@ -58,6 +58,17 @@ void check_may_write(const fs::path& folder, const fs::path& path) {
                         "one that may be written to");
 }
 
+// Whether a file that exists lies in a study's folder, or among one participant's files there.
+bool is_of_study(const fs::path& file) {
+    std::error_code error;
+    for (fs::path folder = fs::canonical(file, error).parent_path(); !error; folder = folder.parent_path()) {
+        if (fs::exists(folder / "study.json", error)) return true;
+        const bool inside = folder.filename() == "beh" || folder.filename().string().starts_with("sub-");
+        if (!inside || !folder.has_relative_path()) return false;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::vector<fs::path> listed_entries(const fs::path& folder) {
@@ -123,6 +134,8 @@ void check_output(const fs::path& path, const std::vector<fs::path>& inputs) {
     check_may_write(folder_of(target), path);
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) return;
+    if (is_of_study(path))
+        throw bad_input(path.string(), "", "a file of a study", "another name: what people gave is never replaced");
     for (const fs::path& input : inputs) {
         if (is_in(status, input))
             throw bad_input(path.string(), "", "the input " + input.string(),

@@ -46,7 +46,8 @@ std::filesystem::path output_target(const std::filesystem::path& path);
 
 // Checks, before any work, whether a result may go to `path`: its folder must exist and may be written to, and `path` must
 // be a regular file or a free name. It must not be one of `inputs` under any name (nor a file in an input that is a
-// folder), and not the file to which standard output or standard error go. Throws InputError.
+// folder), not the file to which standard output or standard error go, and no file that a study's folder has already (in itself,
+// or in those of its participants). Throws InputError.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
 // Checks the same for a folder of results, which must be a folder or a free name. `names`: the files that it will hold.

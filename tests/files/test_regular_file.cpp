@@ -163,6 +163,26 @@ TEST_CASE(
     CHECK(contains(refusal(""), "found an empty name"));
 }
 
+TEST_CASE("regular file: no result replaces a file that a study's folder has already") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "log/sub-01/beh");
+    fs::create_directories(folder / "log/report");
+    fs::create_directories(folder / "sub-01");
+    for (const char* name : {"log/study.json", "log/participants.tsv", "log/sub-01/answers.json",
+                             "log/sub-01/beh/run-01_events.tsv", "log/report/report.md", "sub-01/own.json"})
+        write_text_atomically(folder / name, "kept");
+    fs::create_symlink(folder / "log/participants.tsv", folder / "link.tsv");
+    for (const char* name : {"log/study.json", "log/participants.tsv", "log/sub-01/answers.json",
+                             "log/sub-01/beh/run-01_events.tsv", "link.tsv"}) {
+        CAPTURE(name);
+        CHECK(contains(message_of([&] { check_output(folder / name); }), "found a file of a study"));
+    }
+    for (const char* name : {"log/new.json", "log/report/report.md", "sub-01/own.json"}) {
+        CAPTURE(name);
+        CHECK(message_of([&] { check_output(folder / name); }) == "");
+    }
+}
+
 TEST_CASE("regular file: a result that cannot be written to its folder is refused before any work") {
     const TemporaryFolder folder;
     fs::create_directories(folder / "own");
