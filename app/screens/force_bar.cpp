@@ -98,7 +98,9 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
                      kZones[zone]);
         if (bottom - top < 2.0f * text_px) continue;
         const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
-        draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());
+        const bool covered = top + 0.7f * text_px > limit - text_px && top < limit;  // by the limit's text
+        draw.AddText(ImGui::GetFont(), 0.7f * text_px,
+                     ImVec2(at.x + width_px + 1.5f * mm, covered ? top - 0.75f * text_px : top), kPale, bound.c_str());
         draw.AddLine(ImVec2(at.x + width_px, top), ImVec2(at.x + width_px + mm, top), kPale);
     }
     draw_beyond(ImVec2(at.x, at.y), ImVec2(at.x + width_px, y_of(known_N)), mm, draw);
