@@ -87,7 +87,7 @@ void end_press(Trial& trial) {
 void take_press(const scene::Plan& plan, const PressMoment& press, Trial& trial) {
     const double R_m = plan.indenter_radius_m;
     const double footprint_m = std::sqrt(R_m * std::min(press.depth_m, R_m));  // contact radius by Hertz
-    study::cover(press.p_m.x(), press.p_m.y(), footprint_m, press.depth_m, trial.coverage);
+    study::cover(press.p_m.x(), press.p_m.y(), footprint_m, press.depth_m, trial.coverage, press.beyond);
     measure_press(press, trial.now_s, trial);
     add_to_path(press, trial);
     trial.moved_below = false;
@@ -103,7 +103,8 @@ void observe_press(const scene::Plan& plan, const platform::Sample& sample, cons
     trial.presser = sample.pointer_id;
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
     if (!trial.touched_s) trial.touched_s = trial.now_s;
-    if (pressing) take_press(plan, {state.touch.p_m, state.contact.depth_m, state.touch.force_N}, trial);
+    if (pressing)
+        take_press(plan, {state.touch.p_m, state.contact.depth_m, state.touch.force_N, state.contact.saturated}, trial);
 }
 
 // Stops the clock, or lets it run again. A clock that has not started stays at 0.
@@ -202,7 +203,9 @@ Debrief debrief(const scene::Plan& plan, const Trial& trial) {
         out.score.ppv = std::nan("");
     }
     for (std::size_t i = 0; i < targets.size(); ++i) {
-        out.depth_m.push_back(study::deepest_on(trial.coverage, targets[i]));
+        const study::DeepestPress deepest = study::deepest_on(trial.coverage, targets[i]);
+        out.depth_m.push_back(deepest.depth_m);
+        out.beyond.push_back(deepest.beyond);
         out.findings.push_back(finding_of(trial.coverage, out.score.found_by[i] >= 0, out.depth_m.back()));
     }
     out.area = study::shares_of(trial.coverage);

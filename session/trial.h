@@ -69,6 +69,7 @@ struct PressMoment {
     Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
     double depth_m = 0.0;
     double force_N = 0.0;
+    bool beyond = false;  // harder than the tissue is known for there: the depth is only the one it is known to
 };
 // Takes the press of a device that leads, as an arm does, at a host time. Does nothing before the trial has begun and once it is finished.
 void observe_device(const scene::Plan& plan, const PressMoment& press, double t_host_s, Trial& trial);
@@ -88,6 +89,7 @@ struct Debrief {
     bool scored = true;             // false: which nodules there are is not known, so that no mark is right or wrong
     std::vector<Finding> findings;  // of each nodule of the plan
     std::vector<double> depth_m;    // of the deepest press over each nodule
+    std::vector<bool> beyond;       // whether that press was beyond the depth to which the tissue is known there
     study::CoverageShares area;
 };
 Debrief debrief(const scene::Plan& plan, const Trial& trial);

@@ -40,19 +40,23 @@ Coverage make_coverage(double x_m, double y_m, double width_m, double height_m, 
     c.n_x = std::max(1, static_cast<int>(std::ceil(width_m / c.cell_m - 1e-9)));
     c.n_y = std::max(1, static_cast<int>(std::ceil(height_m / c.cell_m - 1e-9)));
     c.depth_m.assign(static_cast<std::size_t>(c.n_x * c.n_y), 0.0f);
+    c.beyond.assign(c.depth_m.size(), false);
     return c;
 }
 
-void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& c) {
+void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& c, bool beyond) {
     if (!(depth_m > 0.0) || !std::isfinite(x_m + y_m + radius_m + depth_m)) return;
     const CellRange range = cells_near(c, x_m, y_m, radius_m);
     const auto depth = static_cast<float>(depth_m);
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
-            float& deepest = c.depth_m[cell_index(c, i, j)];
+            const std::size_t cell = cell_index(c, i, j);
             // most cells were as deep at the last sample
-            if (deepest >= depth || !holds(c, i, j, x_m, y_m, radius_m)) continue;
-            deepest = depth;
+            const float deepest = c.depth_m[cell];
+            if (deepest > depth || (deepest == depth && c.beyond[cell] >= beyond)) continue;
+            if (!holds(c, i, j, x_m, y_m, radius_m)) continue;
+            c.depth_m[cell] = depth;
+            c.beyond[cell] = beyond;
         }
     }
 }
@@ -86,19 +90,22 @@ double deepest_near(const Coverage& c, double x_m, double y_m, double radius_m) 
     return static_cast<double>(deepest_m);
 }
 
-double deepest_on(const Coverage& c, const Target& target) {
+DeepestPress deepest_on(const Coverage& c, const Target& target) {
     const double radius_m = 0.5 * target.diameter_m;
     float deepest_m = 0.0f;
+    bool beyond = false;
     const CellRange range = cells_near(c, target.x_m, target.y_m, std::max(radius_m, 0.5 * target.length_m));
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
             const MarkedPlace centre{c.x_m + (i + 0.5) * c.cell_m, c.y_m + (j + 0.5) * c.cell_m};
             const bool on = distance_m(target, centre) <= radius_m;
-            if (on || holds(c, i, j, target.x_m, target.y_m, radius_m))
-                deepest_m = std::max(deepest_m, c.depth_m[cell_index(c, i, j)]);
+            const std::size_t cell = cell_index(c, i, j);
+            if ((!on && !holds(c, i, j, target.x_m, target.y_m, radius_m)) || c.depth_m[cell] < deepest_m) continue;
+            beyond = c.beyond[cell] || (beyond && c.depth_m[cell] == deepest_m);
+            deepest_m = c.depth_m[cell];
         }
     }
-    return static_cast<double>(deepest_m);
+    return {static_cast<double>(deepest_m), beyond};
 }
 
 const char* name_of(PalpationLevel level) {

@@ -20,6 +20,7 @@ struct Coverage {
     int n_y = 0;
     double full_depth_m = 0.0;   // the depth up to which the tissue is known
     std::vector<float> depth_m;  // n_x * n_y, greatest depth in each cell, x fastest; 0: never touched
+    std::vector<bool> beyond;    // of each cell: that depth is only the one to which the tissue is known at that place
 };
 
 // Makes the grid of a tissue with its lower left corner at (x, y). Cells are 1 mm wide, and wider for tissues above 512
@@ -27,8 +28,9 @@ struct Coverage {
 Coverage make_coverage(double x_m, double y_m, double width_m, double height_m, double full_depth_m);
 
 // Adds one press. It covers the cells whose centres lie within `radius_m` of (x, y) and the cell that holds (x, y).
-// Allocates nothing. A depth that is not above 0, or any value that is not finite, adds nothing.
-void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& coverage);
+// Allocates nothing. A depth that is not above 0, or any value that is not finite, adds nothing. beyond: the press was harder
+// than the tissue is known for at this place, so that the true depth is greater.
+void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& coverage, bool beyond = false);
 
 PalpationLevel level_of(const Coverage& coverage, double depth_m);
 
@@ -43,7 +45,11 @@ CoverageShares shares_of(const Coverage& coverage);
 double deepest_near(const Coverage& coverage, double x_m, double y_m, double radius_m);
 
 // Returns the greatest depth on a target, or 0 if nothing of it was touched.
-double deepest_on(const Coverage& coverage, const Target& target);
+struct DeepestPress {
+    double depth_m = 0.0;
+    bool beyond = false;  // as in Coverage
+};
+DeepestPress deepest_on(const Coverage& coverage, const Target& target);
 
 const char* name_of(PalpationLevel level);
 

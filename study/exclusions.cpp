@@ -174,6 +174,9 @@ void add_replacement(const fs::path& directory, const Replacement& replacement) 
     if (is_among(people, replacement.replaced_by))
         throw files::bad_input("--by", "", files::shown(replacement.replaced_by),
                                "a code that is not yet" + among + ": who has begun keeps the place in the plan");
+    if (const std::string alike = spelled_alike(people, replacement.replaced_by); !alike.empty())
+        throw files::bad_input("--by", "", files::shown(replacement.replaced_by),
+                               "a code that differs from " + alike + among + " by more than capitals or zeros");
     // simulated participants are called sim0001, sim0002, ... (app/study/simulate.cpp)
     if (read_identity(directory)->kind.simulated && replacement.replaced_by.starts_with("sim"))
         throw files::bad_input(

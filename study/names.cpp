@@ -40,4 +40,16 @@ bool is_code(std::string_view code) {
     return plain && !reads_as_missing(code) && !names_a_sum(code);
 }
 
+std::string without_spelling(const std::string& code) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::string out;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        const char c = code[i];
+        const bool in_front =
+            c == '0' && i + 1 < code.size() && digit(code[i + 1]) && (out.empty() || !digit(out.back()));
+        if (!in_front) out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return out;
+}
+
 }  // namespace palpa::study

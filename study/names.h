@@ -2,6 +2,7 @@
 // Names and codes in logs and tables. Programs that read tables (pandas, R, spreadsheets) take some words for a missing
 // value and a double quote for the begin of a field, so such names are refused before they reach a log.
 
+#include <string>
 #include <string_view>
 
 namespace palpa::study {
@@ -27,5 +28,8 @@ bool has_outer_space(std::string_view name);
 
 // True for a participant's code as kCodeRule says; `sub-` is no part of it.
 bool is_code(std::string_view code);
+
+// The code without capitals and zeros in front of its numbers: p1 for P1, p01 and P001.
+std::string without_spelling(const std::string& code);
 
 }  // namespace palpa::study

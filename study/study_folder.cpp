@@ -10,6 +10,7 @@
 #include "files/text.h"
 #include "study/dataset.h"
 #include "study/exclusions.h"
+#include "study/names.h"
 #include "study/rows.h"
 #include "study/run_log.h"
 #include "study/sample_log.h"
@@ -123,6 +124,15 @@ StudyIdentity identity_in(std::string_view study_json, const std::string& file_n
     out.orders_version = json.integer("orders_version", 1, 1000, 1);
     json.finish();
     return out;
+}
+
+std::string spelled_alike(const std::vector<Person>& people, const std::string& code) {
+    std::string alike;
+    for (const Person& one : people) {
+        if (one.code == code) return "";
+        if (without_spelling(one.code) == without_spelling(code)) alike = one.code;
+    }
+    return alike;
 }
 
 std::vector<Person> read_people(const fs::path& directory, std::vector<std::string>& notes) {

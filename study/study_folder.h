@@ -58,6 +58,10 @@ std::vector<Person> read_people(const std::filesystem::path& directory, std::vec
 std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name,
                               std::vector<std::string>& notes);
 
+// The code of a participant that `code`, of nobody yet, was probably meant to be: they differ by capitals or zeros in front of
+// numbers alone; "" if there is none.
+std::string spelled_alike(const std::vector<Person>& people, const std::string& code);
+
 // Appends the participants whose codes are not in the file yet; they are on the disk when the function returns. Throws
 // std::runtime_error if they cannot be written.
 void add_people(const std::filesystem::path& directory, const std::vector<Person>& people);

@@ -57,8 +57,8 @@ Examined examined(const study::Coverage& c, const scene::View& view) {
 constexpr double kHardly = 0.25;
 
 std::string percent_left(const Examined& shares) {
-    const double left = std::round(100.0 * (1.0 - shares.whole));
-    return left < 100.0 || shares.whole == 0.0 ? files::short_number(left) : "nearly 100";
+    if (shares.whole > 0.0 && shares.whole <= 0.005) return "nearly 100";
+    return files::short_number(std::round(100.0 * (1.0 - shares.whole)));
 }
 
 // The reason that comes first also helps most: tissue that was never touched, then too little force, then judgement.

@@ -80,8 +80,11 @@ void left_column(const Shown& shown, const PanelArea& area, Gui& gui, HistoryVie
         history.asks = true;
     }
     for (const std::string& problem : history.problems) warning_paragraph(problem);
-    const bool kept = shown.settings.keep_results && !history.folder.empty();
-    paragraph(kept ? words::filled(words::kHistoryKeptIn, {history.folder.string()}) : words::kHistoryNotKept);
+    if (!shown.settings.keep_results)
+        paragraph(words::kHistoryNotKept);
+    else
+        paragraph(history.folder.empty() ? words::kHistoryNotThisRun
+                                         : words::filled(words::kHistoryKeptIn, {history.folder.string()}));
     ImGui::EndChild();
     end_part("results", gui);
 }

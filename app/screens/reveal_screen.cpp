@@ -66,8 +66,8 @@ void draw_marks(const Shown& shown, const session::Debrief& debrief, const std::
 // A little is not nothing, and nearly all not all.
 std::string percent(double share) {
     if (!std::isfinite(share)) return "-";
-    if (share > 0.0 && share < 0.005) return "< 1 %";
-    if (share < 1.0 && share > 0.995) return "> 99 %";
+    if (share > 0.0 && share <= 0.005) return "< 1 %";
+    if (share < 1.0 && share >= 0.995) return "> 99 %";
     return fixed(100.0 * share, 0) + " %";
 }
 
@@ -105,7 +105,7 @@ void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui
         if (sure > 0) text += words::filled(words::kConfidenceOf, {std::to_string(sure)});
         // what is deeper than the tissue is known for reads as that depth
         const double known_m = shown.plan.greatest_depth_m;
-        const bool beyond = known_m > 0.0 && debrief.depth_m[i] > (1.0 - 1e-6) * known_m;
+        const bool beyond = debrief.beyond[i] || (known_m > 0.0 && debrief.depth_m[i] > (1.0 - 1e-6) * known_m);
         if (debrief.depth_m[i] > 0.0)
             text += words::filled(words::kDownTo, {(beyond ? "> " : "") + fixed(1e3 * debrief.depth_m[i], 1)});
         wrapped_text(text);

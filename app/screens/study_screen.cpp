@@ -161,7 +161,11 @@ void draw_item(const study::Item& item, bool focus, Gui& gui, std::string& answe
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
     // Enter takes the focus from the field, which an answer that is refused needs again
     if (is_deactivated_by_enter() && !is_answer(item, answer)) ImGui::SetKeyboardFocusHere(-1);
-    if (item.from) paragraph(scale_text(item));
+    // what is refused is said in the hint's own line: another one would move the choices below from under a finger
+    if (item.from && !is_answer(item, answer))
+        warning_paragraph(words::filled(words::kWholeFromTo, {std::to_string(*item.from), std::to_string(*item.to)}));
+    else if (item.from)
+        paragraph(scale_text(item));
     if (answer.size() + 4 > sizeof text) warning_paragraph(words::kAnswerFull);  // a letter may have four bytes
     // the field scrolls; what it does not hold can still be read
     if (ImGui::CalcTextSize(answer.c_str()).x > width_px - 4.0f * gui.mm()) paragraph(answer);
@@ -213,11 +217,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
     for (std::size_t i = 0; i < items.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         draw_item(items[i], focus && i == 0, gui, answers[i]);
-        if (!is_answer(items[i], answers[i])) {
-            good = false;
-            warning_paragraph(
-                words::filled(words::kWholeFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
-        }
+        good = good && is_answer(items[i], answers[i]);
         ImGui::PopID();
         gap(gui);
     }

@@ -92,7 +92,7 @@ void draw_header(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wi
     ImGui::SameLine();
     ImGui::SetCursorPos(ImVec2(right_px - 2.0f * line_px - ImGui::GetStyle().ItemSpacing.x, top_px));
     const bool paused = shown.trial.paused_at_s.has_value();
-    if (icon_button(paused ? Icon::play : Icon::pause, words::kHintPause, gui))
+    if (icon_button(paused ? Icon::play : Icon::pause, paused ? words::kHintContinue : words::kHintPause, gui))
         wishes.action = paused ? platform::Action::resume : platform::Action::pause;
     ImGui::SameLine();
     if (icon_button(Icon::question, words::kHintHelp, gui)) view.help = true;

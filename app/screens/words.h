@@ -128,6 +128,7 @@ inline constexpr const char* kDownTo = ", down to {} mm";
 // tooltips
 inline constexpr const char* kHintMenu = "Other tissues, settings, tools of the experimenter";
 inline constexpr const char* kHintPause = "Stop the clock";
+inline constexpr const char* kHintContinue = "Start the clock again";
 inline constexpr const char* kHintHelp = "All keys";
 inline constexpr const char* kHintMark = "Marks the place that you pressed last (the dashed ring)";
 inline constexpr const char* kHintConfidence = "How sure are you of the last mark? 1 is unsure, 5 is sure.";
@@ -250,6 +251,8 @@ inline constexpr const char* kKeyWindowWebDo = "full screen, back";
 inline constexpr const char* kNoHistory = "No results yet. Each finished trial that is kept is listed here.";
 inline constexpr const char* kHistoryKeptIn = "Kept in {}.";
 inline constexpr const char* kHistoryNotKept = "Results are not kept: see the settings.";
+// of a replay, or without a home folder
+inline constexpr const char* kHistoryNotThisRun = "The results of this run are not kept.";
 inline constexpr const char* kDeleteResults = "Delete all results";
 inline constexpr const char* kDeleteAsk = "Delete the results of all trials ({})? They cannot be restored.";
 inline constexpr const char* kDeleteAskUnread =

@@ -71,28 +71,9 @@ const char* what_is_wrong(const std::string& code) {
                : "Enter up to 20 letters and digits.";
 }
 
-// The code without capitals and zeros in front of its numbers: p1 for P1, p01 and P001.
-std::string without_spelling(const std::string& code) {
-    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-    std::string out;
-    for (std::size_t i = 0; i < code.size(); ++i) {
-        const char c = code[i];
-        const bool in_front =
-            c == '0' && i + 1 < code.size() && digit(code[i + 1]) && (out.empty() || !digit(out.back()));
-        if (!in_front) out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    }
-    return out;
-}
-
-// The code of a participant that `code`, of nobody yet, was probably meant to be; "" if there is none.
 std::string spelled_alike(const fs::path& directory, const std::string& code) {
     std::vector<std::string> notes;
-    std::string alike;
-    for (const study::Person& one : study::read_people(directory, notes)) {
-        if (one.code == code) return "";
-        if (without_spelling(one.code) == without_spelling(code)) alike = one.code;
-    }
-    return alike;
+    return study::spelled_alike(study::read_people(directory, notes), code);
 }
 
 void write_now(const StudyRun& run) {

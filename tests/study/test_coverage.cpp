@@ -52,7 +52,7 @@ TEST_CASE("coverage: a press beside a rod, though within half its length of its 
     const auto depth_after = [&](double x_m, double y_m) {
         Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.006);
         cover(x_m, y_m, 0.002, 0.003, c);
-        return deepest_on(c, rod);
+        return deepest_on(c, rod).depth_m;
     };
     CHECK(depth_after(0.085, 0.06) == 0.0);
     CHECK(depth_after(0.06, 0.085) == close_to(0.003));
@@ -60,5 +60,23 @@ TEST_CASE("coverage: a press beside a rod, though within half its length of its 
     CHECK(depth_after(0.066, 0.04) == close_to(0.003));
     Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.006);
     cover(0.0303, 0.0303, 0.0, 0.004, c);
-    CHECK(deepest_on(c, {"point", 0.0304, 0.0304, 0.0, 0.0, 0.0}) == close_to(0.004));  // the cell that holds it
+    CHECK(deepest_on(c, {"point", 0.0304, 0.0304, 0.0, 0.0, 0.0}).depth_m ==
+          close_to(0.004));  // the cell that holds it
+}
+
+TEST_CASE("coverage: the deepest press on a target says whether the tissue is known deeper there") {
+    const Target target{"A", 0.06, 0.06, 0.02, 0.02, 0.0};
+    Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.004);
+    CHECK_FALSE(deepest_on(c, target).beyond);
+    cover(0.06, 0.06, 0.002, 0.0033, c);
+    CHECK_FALSE(deepest_on(c, target).beyond);
+    cover(0.06, 0.06, 0.002, 0.0033, c, true);  // as deep as the place is known, and held there
+    CHECK(deepest_on(c, target).beyond);
+    CHECK(deepest_on(c, target).depth_m == close_to(0.0033));
+    cover(0.06, 0.06, 0.002, 0.002, c);  // lighter than before changes nothing
+    cover(0.03, 0.03, 0.002, 0.003, c);  // nor what is not on the target
+    CHECK(deepest_on(c, target).beyond);
+    cover(0.062, 0.06, 0.002, 0.0036, c);  // known deeper
+    CHECK_FALSE(deepest_on(c, target).beyond);
+    CHECK(deepest_on(c, target).depth_m == close_to(0.0036));
 }

@@ -179,6 +179,7 @@ TEST_CASE("replacements: who replaces a dropout gets that place in the plan, and
     CHECK(contains(refused({"02", "30", "x"}), "somebody whose place is free: 21 has begun in it"));
     CHECK(contains(refused({"01", "22", "x"}), "--by: found '22'"));
     CHECK(contains(refused({"01", "03", "x"}), "--by: found '03', expected a code that is not yet in"));
+    CHECK(contains(refused({"01", "3", "x"}), "--by: found '3', expected a code that differs from 03 in "));
     CHECK(contains(refused({"09", "30", "x"}), "--participant: found '09'"));
     CHECK(contains(refused({"01", "NA", "x"}), "--by: found 'NA'"));
 }

@@ -118,6 +118,23 @@ TEST_CASE("study screen: an age that is refused keeps the keys, so that it can b
     CHECK(desk.app.view.study.answers.at(0) == "34");
 }
 
+TEST_CASE("study screen: an age that is refused moves no answer below it from under a finger") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_questions(folder, desk);
+    const auto height_px = [&](const char* age) {
+        desk.app.view.study.answers.at(0) = age;
+        live_frames(desk, 3);
+        for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if (std::string(window->Name).find("/items") != std::string::npos) return window->ContentSize.y;
+        }
+        return 0.0f;
+    };
+    const float taken_px = height_px("34");
+    CHECK(taken_px > 0.0f);
+    CHECK(height_px("340") == taken_px);
+}
+
 TEST_CASE("study screen: a second Enter after the code does not leave the questions open for good") {
     const TemporaryFolder folder;
     Desk desk("");
