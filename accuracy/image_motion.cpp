@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kBlock_px = 24;  // about half of the indenter in a window of 1280 x 800
 constexpr int kStride_px = 8;
-constexpr int kReach_px = 60;
 constexpr double kSharp_px =
     1.5;  // what is finer than this, steps of thin lines above all, the eye does not tell apart
 constexpr double kShading_px = 6.0;   // what is smoother than this is shading, and no feature that could move
@@ -106,8 +105,9 @@ void refine(const cv::Mat& from, const cv::Rect& block, const cv::Mat& to, Match
 
 // Returns where the search for a block of `from` in `to` may end, the nearest first: the valleys of the difference, and the
 // place where the block was.
-std::vector<Match> candidates(const cv::Mat& from, const cv::Rect& block, const cv::Mat& to) {
-    cv::Rect around(block.x - kReach_px, block.y - kReach_px, kBlock_px + 2 * kReach_px, kBlock_px + 2 * kReach_px);
+std::vector<Match> candidates(const cv::Mat& from, const cv::Rect& block, const cv::Mat& to, double longest_px) {
+    const int reach_px = static_cast<int>(std::ceil(longest_px));
+    cv::Rect around(block.x - reach_px, block.y - reach_px, kBlock_px + 2 * reach_px, kBlock_px + 2 * reach_px);
     around &= cv::Rect(0, 0, to.cols, to.rows);
     cv::Mat score;
     cv::matchTemplate(to(around), from(block), score, cv::TM_SQDIFF);
@@ -118,6 +118,7 @@ std::vector<Match> candidates(const cv::Mat& from, const cv::Rect& block, const 
     std::vector<Match> out{{0.0, 0.0, there, there}};
     for (int y = 0; y < score.rows; ++y) {
         for (int x = 0; x < score.cols; ++x) {
+            if (std::hypot(x - x0, y - y0) > longest_px) continue;
             if (at(score, x, y) < kHopeful * there && is_valley(score, x, y))
                 out.push_back({static_cast<double>(x - x0), static_cast<double>(y - y0), at(score, x, y), there});
         }
@@ -129,8 +130,8 @@ std::vector<Match> candidates(const cv::Mat& from, const cv::Rect& block, const 
 }
 
 // Returns the nearest match that explains the change.
-std::optional<Match> match(const cv::Mat& from, const cv::Rect& block, const cv::Mat& to) {
-    for (Match& candidate : candidates(from, block, to)) {
+std::optional<Match> match(const cv::Mat& from, const cv::Rect& block, const cv::Mat& to, double longest_px) {
+    for (Match& candidate : candidates(from, block, to, longest_px)) {
         refine(from, block, to, candidate);
         if (candidate.left <= kLeft * candidate.there) return candidate;
     }
@@ -143,8 +144,9 @@ cv::Rect middle_of(const cv::Mat& picture) {
     return {margin_px, margin_px, picture.cols - 2 * margin_px, picture.rows - 2 * margin_px};
 }
 
-std::optional<BlockMotion> motion_of(const cv::Mat& before, const cv::Mat& after, const cv::Rect& block) {
-    const std::optional<Match> way = match(before, block, after);
+std::optional<BlockMotion> motion_of(const cv::Mat& before, const cv::Mat& after, const cv::Rect& block,
+                                     double longest_px) {
+    const std::optional<Match> way = match(before, block, after, longest_px);
     if (!way) return std::nullopt;
     cv::Rect there = block;
     there.x += static_cast<int>(std::lround(way->dx_px));
@@ -152,7 +154,7 @@ std::optional<BlockMotion> motion_of(const cv::Mat& before, const cv::Mat& after
     if ((there & middle_of(after)) != there) return std::nullopt;
     // what looked like this before already has not moved here
     if (there != block && mean_square(before(block) - before(there)) < kLeft * way->there) return std::nullopt;
-    const std::optional<Match> back = match(after, there, before);
+    const std::optional<Match> back = match(after, there, before, longest_px);
     if (!back || std::hypot(there.x + back->dx_px - block.x, there.y + back->dy_px - block.y) > kWayBack_px)
         return std::nullopt;
     return BlockMotion{block.x + 0.5 * kBlock_px, block.y + 0.5 * kBlock_px, way->dx_px, way->dy_px};
@@ -172,7 +174,8 @@ bool is_confirmed(const BlockMotion& motion, const std::vector<BlockMotion>& mov
 
 double BlockMotion::length_px() const { return std::hypot(dx_px, dy_px); }
 
-BlockMotion greatest_motion(const Pixels& before, const Pixels& after) {
+BlockMotion greatest_motion(const Pixels& before, const Pixels& after, double longest_px) {
+    longest_px = std::min(longest_px, kReach_px);
     assert(before.width_px == after.width_px && before.height_px == after.height_px);
     const cv::Mat from = features_of(before);
     const cv::Mat to = features_of(after);
@@ -184,7 +187,7 @@ BlockMotion greatest_motion(const Pixels& before, const Pixels& after) {
             const cv::Rect block(x, y, kBlock_px, kBlock_px);
             if (mean_square(change(block)) < kUnchanged) continue;
             if (least_slope(from, block) < kFeatureless) continue;
-            if (const auto motion = motion_of(from, to, block)) moved.push_back(*motion);
+            if (const auto motion = motion_of(from, to, block, longest_px)) moved.push_back(*motion);
         }
     }
     BlockMotion greatest;

@@ -145,6 +145,7 @@ Difference difference_of(const std::vector<platform::Sample>& samples, const sce
             out.apart_m = apart_m;
             out.apart_at = i;
         }
+        out.sunk_m = std::max(out.sunk_m, std::abs(a.contact.depth_m - b.contact.depth_m));
         if (!(b.contact.depth_m > 0.0)) continue;
         const double share = std::abs(a.contact.depth_m / b.contact.depth_m - 1.0);
         if (share > out.depth_share) {
@@ -155,7 +156,17 @@ Difference difference_of(const std::vector<platform::Sample>& samples, const sce
     return out;
 }
 
-files::Json visibility_json(const std::vector<Seen>& seen, const VisibilityOptions& options) {
+std::vector<std::string> nodules_left_out(const scene::Plan& plan, const std::vector<Seen>& seen) {
+    std::vector<std::string> out;
+    for (const stiffnessmaps::Nodule& nodule : plan.nodules) {
+        const auto same = [&](const Seen& one) { return one.stroke.nodule == nodule.id; };
+        if (std::none_of(seen.begin(), seen.end(), same)) out.push_back(nodule.id);
+    }
+    return out;
+}
+
+files::Json visibility_json(const std::vector<Seen>& seen, const std::vector<std::string>& left_out,
+                            const VisibilityOptions& options) {
     files::Json json{{"force_N", options.force_N},
                      {"speed_mm_per_s", 1e3 * options.speed_m_per_s},
                      {"distance_cm", 100.0 * options.distance_m},
@@ -177,6 +188,7 @@ files::Json visibility_json(const std::vector<Seen>& seen, const VisibilityOptio
                                    {"motion_arcmin", one.motion_arcmin},
                                    {"visible", is_seen(one.motion_arcmin, kIsSeen, options)}});
     }
+    json["nodules_left_out"] = left_out;
     if (const Seen* most = most_beside(seen)) {
         json["beside_lag_mm"] = 1e3 * greatest_lag_beside_m(seen);
         json["beside_px"] = most->motion_px;
@@ -186,7 +198,8 @@ files::Json visibility_json(const std::vector<Seen>& seen, const VisibilityOptio
     return json;
 }
 
-std::string visibility_table(const std::vector<Seen>& seen, const VisibilityOptions& options) {
+std::string visibility_table(const std::vector<Seen>& seen, const std::vector<std::string>& left_out,
+                             const VisibilityOptions& options) {
     const auto text = [](double value) { return files::short_number(value); };
     std::string out;
     for (const Seen& one : seen) {
@@ -199,6 +212,10 @@ std::string visibility_table(const std::vector<Seen>& seen, const VisibilityOpti
             (one.difference.beyond ? "; pressed beyond the known depth, where it stays: a smaller --force-N is needed"
                                    : "") +
             "\n";
+    }
+    for (const std::string& nodule : left_out) {
+        out += "nodule " + nodule + ": not judged, since a stroke of " + text(1e3 * (kBefore_m + kAfter_m)) +
+               " mm through it leaves the tissue\n";
     }
     if (const Seen* most = most_beside(seen)) {
         out += "beside the nodules: lag " + text(1e3 * greatest_lag_beside_m(seen)) + " mm, seen motion " +

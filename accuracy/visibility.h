@@ -58,11 +58,15 @@ struct Difference {
     double lag_m = 0.0;        // greatest lag of the avatar, with nodules
     double apart_m = 0.0;      // greatest distance between both avatars, relative to their textures,
     std::size_t apart_at = 0;  // and after which sample
-    double depth_share = 0.0;  // greatest difference in depth, as a share of the depth without nodules,
+    double sunk_m = 0.0;       // greatest difference in depth,
+    double depth_share = 0.0;  // and as a share of the depth without nodules,
     std::size_t depth_at = 0;  // and after which sample
     // The tissue is not known as deep as the force presses: depths and lag are those of its last depth.
     bool beyond = false;
 };
+// Nothing on the screen moves farther than this: the avatar by what both are apart, and its shadow and the dent's rim by the
+// difference in depth at most.
+inline double longest_motion_m(const Difference& difference) { return difference.apart_m + difference.sunk_m; }
 Difference difference_of(const std::vector<platform::Sample>& samples, const scene::Scene& scene,
                          const scene::Plan& with, const scene::Plan& without, const scene::ScreenArea& screen);
 
@@ -74,7 +78,12 @@ struct Seen {
     double motion_arcmin = 0.0;
 };
 
-files::Json visibility_json(const std::vector<Seen>& seen, const VisibilityOptions& options);
-std::string visibility_table(const std::vector<Seen>& seen, const VisibilityOptions& options);
+// The nodules through which no stroke stays on the tissue: nothing is said of them.
+std::vector<std::string> nodules_left_out(const scene::Plan& plan, const std::vector<Seen>& seen);
+
+files::Json visibility_json(const std::vector<Seen>& seen, const std::vector<std::string>& left_out,
+                            const VisibilityOptions& options);
+std::string visibility_table(const std::vector<Seen>& seen, const std::vector<std::string>& left_out,
+                             const VisibilityOptions& options);
 
 }  // namespace palpa::accuracy

@@ -172,7 +172,7 @@ void finish(const Eigen::Vector2d& middle_m, const std::string& tissue, TactileP
 }  // namespace
 
 TactilePlan make_tactile_plan(const scene::Scene& scene, const scene::Plan& scene_plan) {
-    const std::string file = scene.file.string();
+    const std::string file = scene.file.empty() ? scene.name : scene.file.string();  // a map has no file of a scene
     if (!scene.tactile)
         throw files::bad_input(file, "tactile", "no such key", "one that says which arm or display there is");
     if (const scene::ForceCurve* curve = scene::curve_of(scene_plan.tissue))

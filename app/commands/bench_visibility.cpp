@@ -102,6 +102,8 @@ void save(const accuracy::Pixels& pixels, const std::string& name, const Observe
                             render::png_bytes(pixels.width_px, pixels.height_px, pixels.rgb));
 }
 
+constexpr double kSlack_px = 2.0;  // of a match, beyond what moved
+
 accuracy::Seen see(const accuracy::Stroke& stroke, Observer& observer) {
     const session::Session& with = observer.sides[0].session;
     const accuracy::VisibilityOptions& options = observer.options.visibility;
@@ -110,11 +112,12 @@ accuracy::Seen see(const accuracy::Stroke& stroke, Observer& observer) {
     seen.stroke = stroke;
     seen.difference =
         accuracy::difference_of(samples, with.scene, *with.plan, *observer.sides[1].session.plan, with.state.screen);
+    const double longest_px = longest_motion_m(seen.difference) * with.state.view.px_per_m + kSlack_px;
     for (const std::size_t at : {seen.difference.apart_at, seen.difference.depth_at}) {
         if (at == 0) continue;
         const accuracy::Pixels without = frame_after(samples, at, observer, observer.sides[1]);
         const accuracy::Pixels shown = frame_after(samples, at, observer, observer.sides[0]);
-        const double motion_px = greatest_motion(without, shown).length_px();
+        const double motion_px = greatest_motion(without, shown, longest_px).length_px();
         if (motion_px < seen.motion_px) continue;
         seen.motion_px = motion_px;
         if (stroke.nodule.empty()) continue;
@@ -148,13 +151,14 @@ void run_visibility(SeeOptions options) {
     for (Side& side : observer.sides) begin_stroke(observer, side);
     std::vector<accuracy::Seen> seen;
     for (const accuracy::Stroke& stroke : accuracy::strokes_over(plan)) seen.push_back(see(stroke, observer));
+    const std::vector<std::string> left_out = nodules_left_out(plan, seen);
     if (options.json) {
-        files::Json json = visibility_json(seen, options.visibility);
+        files::Json json = visibility_json(seen, left_out, options.visibility);
         json["scene"] = scene.name;
         std::fputs(files::json_text(json).c_str(), stdout);
     } else {
         std::printf("%s, %g N\n%s", scene.name.c_str(), options.visibility.force_N,
-                    visibility_table(seen, options.visibility).c_str());
+                    visibility_table(seen, left_out, options.visibility).c_str());
     }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "accuracy/image_motion.h"
+#include "tests/close_to.h"
 
 using namespace palpa;
 using namespace palpa::accuracy;
@@ -76,6 +77,14 @@ TEST_CASE("image motion: a shifted pattern moves by the shift, to a tenth of a p
         CHECK(std::abs(motion.dx_px - row.dx) < 0.1);
         CHECK(std::abs(motion.dy_px - row.dy) < 0.1);
     }
+}
+
+TEST_CASE("image motion: nothing is taken to have moved farther than it can have") {
+    const Pixels before = picture([](int x, int y) { return pattern(x, y); });
+    const Pixels after = picture([](int x, int y) { return pattern(x - 31.6, y - 20.3); });
+    CHECK(greatest_motion(before, after).length_px() == close_to(std::hypot(31.6, 20.3)).epsilon(0.01));
+    CHECK(greatest_motion(before, after, 38.0).length_px() > 37.0);
+    CHECK(greatest_motion(before, after, 36.0).length_px() < 36.1);
 }
 
 TEST_CASE("image motion: what moves over a resting background is found") {

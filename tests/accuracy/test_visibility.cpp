@@ -129,7 +129,7 @@ TEST_CASE("visibility: angles at 40 cm, and what stands in the report") {
     Seen less = beside;
     less.motion_arcmin = 0.5;
     less.difference.lag_m = 2e-4;
-    const Json json = visibility_json({a, b, less, beside}, options);
+    const Json json = visibility_json({a, b, less, beside}, {"D1"}, options);
     CHECK(json["nodules"].size() == 2);
     CHECK(json["nodules"][0]["id"] == "A");
     CHECK(json["nodules"][0]["visible"] == true);
@@ -139,9 +139,12 @@ TEST_CASE("visibility: angles at 40 cm, and what stands in the report") {
     CHECK(json["beside_lag_mm"] == close_to(0.2));
     CHECK(json["beside_visible"] == false);
     beside.motion_arcmin = 1.3;
-    CHECK(visibility_json({a, beside}, options)["beside_visible"] == true);
-    CHECK_FALSE(visibility_json({a}, options).contains("beside_arcmin"));
-    const std::string table = visibility_table({a, b, beside}, options);
+    CHECK(visibility_json({a, beside}, {}, options)["beside_visible"] == true);
+    CHECK_FALSE(visibility_json({a}, {}, options).contains("beside_arcmin"));
+    const std::string table = visibility_table({a, b, beside}, {"D1"}, options);
     CHECK(table.find("nodule A") != std::string::npos);
     CHECK(table.find("Annett et al. 2014") != std::string::npos);
+    CHECK(table.find("nodule D1: not judged") != std::string::npos);
+    CHECK(json["nodules_left_out"] == Json{"D1"});
+    CHECK(nodules_left_out(phantom().with, {a, beside}) == std::vector<std::string>{"B", "C"});
 }
