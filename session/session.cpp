@@ -257,7 +257,7 @@ void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, 
 void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, TrialMode mode, Session& session) {
     ++session.trials;
     add_to_totals(session);
-    session.state = scene::start(session.scene, *session.plan, screen_of(info));
+    session.state = scene::start(session.scene, *session.plan, files.shown.value_or(screen_of(info)));
     session.state.time_every = 16;
     session.trial = make_trial(*session.plan, mode);
     session.device = info.device;

@@ -27,6 +27,9 @@ struct SessionFiles {
     std::string task = "palpation";
     double finger_offset_mm = 0.0;  // by which positions of fingers were moved up; goes into the settings and the trace
     int first_run = 1;              // lower run numbers are taken, elsewhere
+    // Where the tissue is drawn from the first sample on, since a study's settings are written before; nothing: on the whole
+    // screen of the trace.
+    std::optional<scene::ScreenArea> shown{};
 };
 
 // What the trials before the present one add to the figures of a run.

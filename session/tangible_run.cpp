@@ -25,7 +25,7 @@ TangibleCommand TangibleLoop::command(const Plan& plan, const DeviceInput<Feedba
 
 TangibleSink::TangibleSink(const TangiblePlan& plan, const std::filesystem::path& log,
                            const std::filesystem::path& rows) {
-    if (!log.empty()) log_.emplace(log, *plan.model);
+    if (!log.empty()) log_.emplace(log, *plan.model, plan.loop.command);
     if (!rows.empty()) rows_.emplace(rows, field_names<tangible::TangibleFeedback>());
 }
 

@@ -174,9 +174,11 @@ std::string analysis_part(const Protocol& protocol) {
                       sheet_row("primary comparison", sheet_value(primary_text(protocol)));
     const bool compared = protocol.conditions.size() > 1 || protocol.groups.size() > 1;
     if (compared && (any_pairs(protocol, false) || any_task(protocol, TaskKind::choice)))
-        out += sheet_row("all other comparisons",
-                         std::string("as the primary one, exploratory; p corrected by Holm ") + kHolmFamilies +
-                             (protocol.groups.size() > 1 ? "; interactions of PPV are not tested" : ""));
+        out += sheet_row(
+            "all other comparisons",
+            std::string(protocol.primary ? "as the primary one" : "t and permutation tests over participants") +
+                ", exploratory; p corrected by Holm " + kHolmFamilies +
+                (protocol.groups.size() > 1 ? "; interactions of PPV are not tested" : ""));
     out += sheet_row("intervals", "95 %: t, Wilson where nobody counts twice, else bootstrap over participants");
     const auto searched = [&](bool by_hand) {
         for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {

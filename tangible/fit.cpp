@@ -201,8 +201,13 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
     for (const SoftActuator& a : model.actuators) {
         if (has_lengths && a.kind == ActuatorKind::cable) length.push_back(table.column(a.name + "_mm"));
     }
+    const std::size_t by_length = table.has_column("by_length") ? table.column("by_length") : 0;
     std::vector<RecordedTick> out;
     while (table.next()) {
+        if (by_length > 0 && table.field(by_length) != "0")
+            table.fail(by_length,
+                       "0: drives that were told tensions (--command force), since those of a cable that is held at "
+                       "a length follow from the modulus that is to be found");
         RecordedTick tick;
         tick.time_s = table.finite_number(time);
         if (!out.empty() && tick.time_s <= out.back().time_s) table.fail(time, "a time after that of the row above");

@@ -23,11 +23,11 @@ std::string tick_columns(const DeviceModel& model) {
     std::string text = "time_s\tdepth_mm\twanted_N\tforce_N\tworld_depth_mm";
     for (const SoftActuator& a : model.actuators) text += "\t" + a.name + "_" + unit_of(a.kind);
     for (const SoftActuator& a : model.actuators) text += "\t" + a.name + (is_cable(a) ? "_mm" : "_mm3");
-    return text + "\tresidual_mm\tsaturated\theld\trelaxed\n";
+    return text + "\tresidual_mm\tsaturated\theld\trelaxed\tby_length\n";
 }
 
-void append_tick(const DeviceModel& model, const TangibleCommand& tick, double depth_m, double wanted_N,
-                 double rendered_N, std::string& text) {
+void append_tick(const DeviceModel& model, CommandKind command, const TangibleCommand& tick, double depth_m,
+                 double wanted_N, double rendered_N, std::string& text) {
     files::append_number(tick.time_s, text);
     append_value(1e3 * depth_m, text);
     append_value(wanted_N, text);
@@ -37,18 +37,19 @@ void append_tick(const DeviceModel& model, const TangibleCommand& tick, double d
     for (std::size_t j = 0; j < model.actuators.size(); ++j)
         append_value((is_cable(model.actuators[j]) ? 1e3 : -1e9) * tick.length[j], text);
     append_value(1e3 * tick.residual_m, text);
-    for (const bool flag : {tick.saturated, tick.held, tick.relaxed}) text += flag ? "\t1" : "\t0";
+    for (const bool flag : {tick.saturated, tick.held, tick.relaxed, command != CommandKind::force})
+        text += flag ? "\t1" : "\t0";
     text.push_back('\n');
 }
 
-TickLog::TickLog(const std::filesystem::path& folder, const DeviceModel& model)
-    : model_(model), file_(folder / "ticks.tsv") {
+TickLog::TickLog(const std::filesystem::path& folder, const DeviceModel& model, CommandKind command)
+    : model_(model), command_(command), file_(folder / "ticks.tsv") {
     file_.append(tick_columns(model));
 }
 
 void TickLog::write(const TangibleCommand& tick, double rendered_N) {
     text_.clear();
-    append_tick(model_, tick, tick.depth_m, tick.wanted_N, rendered_N, text_);
+    append_tick(model_, command_, tick, tick.depth_m, tick.wanted_N, rendered_N, text_);
     file_.append(text_);
 }
 

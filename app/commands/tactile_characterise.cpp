@@ -106,12 +106,12 @@ void check_force(const CharacteriseOptions& options, const CharacterisedTissue& 
         double free_mm = 0.0;  // the tissue need not be straight: where its own curve meets the limit
         for (double step_mm = 0.5 * options.depth_mm; step_mm > 1e-3 * options.depth_mm; step_mm *= 0.5)
             if (!held(free_mm + step_mm)) free_mm += step_mm;
-        throw files::bad_input("--stiffness-N-per-mm", "",
-                               files::short_number(stiffness) + " at a depth of " +
-                                   files::short_number(options.depth_mm) + " mm, where the force limit of " +
-                                   files::short_number(limit_N) + " N holds the force",
-                               "a softer tissue, a greater --force-limit-N, or a --depth-mm of at most " +
-                                   files::short_number(0.999 * free_mm));  // rounded, it is taken, too
+        throw files::bad_input(
+            "--stiffness-N-per-mm", "",
+            files::short_number(stiffness) + " at a depth of " + files::short_number(options.depth_mm) +
+                " mm, where the force limit of " + files::short_number(limit_N) + " N holds the force",
+            "a softer tissue, " + std::string(limit_N < options.force_limit_N ? "" : "a greater --force-limit-N, ") +
+                "or a --depth-mm of at most " + files::short_number(0.999 * free_mm));  // rounded, it is taken, too
     }
 }
 

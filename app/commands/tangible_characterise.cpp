@@ -184,7 +184,7 @@ files::Json reach_json(const ReachOfAll& all) {
 void write_press_table(const TangiblePlan& plan, const PressFigures& figures, const fs::path& file) {
     std::string text = tick_columns(*plan.model);
     for (const tangible::PressTick& tick : figures.ticks)
-        append_tick(*plan.model, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
+        append_tick(*plan.model, plan.loop.command, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
     files::write_text_atomically(file, text);
 }
 

@@ -33,8 +33,11 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         app.notices.note.clear();
         begin_figures(app);
         app.over_unseen = false;
-        session::begin_trial(files, info_of(app, window),
-                             known ? session::TrialMode::practice : session::TrialMode::test, app.session);
+        const platform::TraceInfo info = info_of(app, window);
+        const platform::Sample laid_out = resize_sample(window, gui, app.settings, now_of(app, window));
+        files.shown = {laid_out.width_px, laid_out.height_px, laid_out.x_px, laid_out.y_px,
+                       session::screen_of(info).px_per_m};
+        session::begin_trial(files, info, known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
         session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         std::get<step::Trial>(run.step).begun = true;

@@ -64,6 +64,9 @@ files::Json merged(const Settings& settings, const Settings& kept, Settings ther
         const auto before = kept.px_per_mm.find(screen);
         if (before == kept.px_per_mm.end() || before->second != px_per_mm) there.px_per_mm[screen] = px_per_mm;
     }
+    for (const auto& [screen, px_per_mm] : kept.px_per_mm) {
+        if (settings.px_per_mm.count(screen) == 0) there.px_per_mm.erase(screen);
+    }
     files::Json out = json_of(there);
     const files::Json before = json_of(kept), now = json_of(settings);
     for (const auto& [key, value] : now.items()) {

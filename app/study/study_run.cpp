@@ -255,14 +255,14 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
             run.stimuli.back() = stimuli_of(*scene, protocol, condition);
     }
     check_displays(run);
-    study::open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
-    if (code.empty()) return run;
-    if (!plain(code))
+    if (!code.empty() && !plain(code))  // before anything is written
         throw files::bad_input("--participant", "", files::shown(code),
                                study::names_a_sum(code) ? "a code that tables do not take for a row of sums"
                                : study::reads_as_missing(code)
                                    ? "a code that tables in pandas and R do not take for a missing value"
                                    : "up to 20 letters and digits");
+    study::open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
+    if (code.empty()) return run;
     enter_code(code, run);
     if (!run.note.empty())
         throw files::bad_input("--participant", "", files::shown(code) + ", " + why_refused(run, code), "a new code");

@@ -193,6 +193,7 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
           std::string::npos);
     const Json settings = read_json(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_settings.json");
     CHECK(settings["study"]["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
+    CHECK(settings["tissue_area_px"][0].get<double>() > 100.0);  // beside the panel, not the whole window
 }
 
 TEST_CASE("killed: the interrupted trial comes again, and its samples up to the kill are on the disk") {

@@ -21,7 +21,7 @@ std::vector<RecordedTick> recorded(const PlantOptions& plant, std::size_t every 
     std::string text = tick_columns(*model);
     for (std::size_t i = 0; i < figures.ticks.size(); i += every) {
         const PressTick& tick = figures.ticks[i];
-        append_tick(*model, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
+        append_tick(*model, CommandKind::force, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
     }
     const TemporaryFolder folder;
     files::write_text_atomically(folder / "press.tsv", text);
@@ -35,6 +35,15 @@ std::string presses_refused(const std::string& text) {
 }
 
 }  // namespace
+
+TEST_CASE("fit: a press whose cables were told lengths is refused, since nobody knows their tensions") {
+    const PressFigures figures = press_small(0.15, small_plant(1.2));
+    const auto model = small_strip();
+    std::string text = tick_columns(*model);
+    for (const PressTick& tick : figures.ticks)
+        append_tick(*model, CommandKind::position, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
+    CHECK(contains(presses_refused(text), "line 2, by_length: found '1', expected 0: drives that were told tensions"));
+}
 
 TEST_CASE("fit: a plant's modulus is found again from one press") {
     const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.2), 4));

@@ -77,6 +77,11 @@ TEST_CASE("settings: of two windows each saves what it changed, and undoes nothi
     both = load_settings(file, problem);
     CHECK(both.text_percent == 100);
     CHECK_FALSE(both.keep_results);
+    Settings reset = back;  // a screen whose scale is reset is measured no more, the other window's still is
+    reset.px_per_mm.clear();
+    REQUIRE(save_settings(reset, back, file).empty());
+    both = load_settings(file, problem);
+    CHECK(both.px_per_mm == std::map<std::string, double>{{"right screen", 4.0}});
 }
 
 TEST_CASE("settings: a place that cannot be written is said in words") {
