@@ -11,19 +11,25 @@ std::string renamed(const std::string& file, const std::filesystem::path& from, 
     return std::filesystem::proximate(from / file, to).string();
 }
 
-// Renames the files of regions, however deep they lie.
-void rename_files(const std::filesystem::path& from, const std::filesystem::path& to, files::Json& value) {
+// Visits the names of the files of regions, however deep they lie.
+template <class Visit>
+void visit_names(const Visit& visit, files::Json& value) {
     if (value.is_object()) {
-        if (value.contains("stl")) {
-            files::Json& stl = value["stl"];
-            stl["file"] = renamed(stl["file"].get<std::string>(), from, to);
-        }
+        if (value.contains("stl") && value["stl"].is_object() && value["stl"].contains("file"))
+            visit(value["stl"]["file"]);
         for (const char* key : {"runs", "curve"}) {
-            if (value.contains(key)) value[key] = renamed(value[key].get<std::string>(), from, to);
+            if (value.contains(key)) visit(value[key]);
         }
     }
     if (!value.is_structured()) return;
-    for (files::Json& inner : value) rename_files(from, to, inner);
+    for (files::Json& inner : value) visit_names(visit, inner);
+}
+
+template <class Visit>
+void visit_names_of_part(const Visit& visit, files::Json& part) {
+    for (const char* key : {"shape", "supports", "button"}) {
+        if (part.is_object() && part.contains(key)) visit_names(visit, part[key]);
+    }
 }
 
 }  // namespace
@@ -83,10 +89,19 @@ files::Json moved_part(files::Json json, const std::filesystem::path& file, cons
     const std::filesystem::path from = std::filesystem::absolute(file).parent_path();
     const std::filesystem::path to = std::filesystem::absolute(copy).parent_path();
     if (from == to) return json;
-    for (const char* key : {"shape", "supports", "button"}) {
-        if (json.contains(key)) rename_files(from, to, json[key]);
-    }
+    visit_names_of_part([&](files::Json& name) { name = renamed(name.get<std::string>(), from, to); }, json);
     return json;
+}
+
+std::vector<std::filesystem::path> files_of_part(const std::filesystem::path& file) {
+    std::vector<std::filesystem::path> out{file};
+    files::Json json = files::read_json(file);
+    visit_names_of_part(
+        [&](const files::Json& name) {
+            if (name.is_string()) out.push_back(file.parent_path() / name.get<std::string>());
+        },
+        json);
+    return out;
 }
 
 void save_part(const EditedPart& edited, const std::filesystem::path& path) {

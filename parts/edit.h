@@ -29,6 +29,9 @@ bool redo_edit(EditedPart& edited);
 // the same files from a folder of another name.
 files::Json moved_part(files::Json json, const std::filesystem::path& file, const std::filesystem::path& copy);
 
+// The part's file and those that it names: what a command reads that is given the part. Throws InputError if it is no JSON.
+std::vector<std::filesystem::path> files_of_part(const std::filesystem::path& file);
+
 // Writes the part as moved_part() says, whole or not at all, without the comments of the file it came from. Throws
 // InputError as check_shape() does, and std::runtime_error if the file cannot be written.
 void save_part(const EditedPart& edited, const std::filesystem::path& path);

@@ -42,7 +42,8 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     describe(plan.tissue, scene, plan);
     if (scene.mapping.tissue_m) plan.area.size_m = *scene.mapping.tissue_m;
     if (scene.surface) plan.indenter_radius_m = scene.surface->indenter_radius_m.value_or(plan.indenter_radius_m);
-    if (plan.indenter_radius_m >= kFingertip_m) plan.indenter = DrawnIndenter::fingertip;
+    if (plan.indenter == DrawnIndenter::ball && plan.indenter_radius_m >= kFingertip_m)
+        plan.indenter = DrawnIndenter::fingertip;
     if (scene.surface) plan.indenter = scene.surface->indenter.value_or(plan.indenter);
     add_stages(scene, plan);
     return plan;

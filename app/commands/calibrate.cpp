@@ -68,11 +68,15 @@ std::optional<Enum> parsed(const std::string& name, std::initializer_list<Enum> 
 constexpr auto kLevels = {calibration::LevelField::pressure, calibration::LevelField::pressure_raw,
                           calibration::LevelField::contact_area};
 
-// `calibrate record` keeps beside its points what their levels are; options take precedence.
+// `calibrate record` keeps beside its points what their levels are. Empty for other data.
+std::filesystem::path session_of(const std::filesystem::path& data) {
+    return data.filename() == "points.csv" ? data.parent_path() / "session.json" : std::filesystem::path();
+}
+
+// What the session says of the levels; options take precedence.
 void take_session(const FitArguments& arguments, calibration::CalibrateOptions& options) {
-    const std::filesystem::path data = arguments.data;
-    const std::filesystem::path file = data.parent_path() / "session.json";
-    if (data.filename() != "points.csv" || !std::filesystem::exists(file)) return;
+    const std::filesystem::path file = session_of(arguments.data);
+    if (file.empty() || !std::filesystem::exists(file)) return;
     const files::Json session = files::read_json(file);
     if (!session.is_object()) return;
     const files::Json level = session.value("level", files::Json());
@@ -123,10 +127,11 @@ void name_device(const calibration::DeviceNames& given, calibration::DeviceNames
 }
 
 void fit(const FitArguments& arguments) {
-    files::check_output(arguments.output, {arguments.data});
+    const std::vector<std::filesystem::path> inputs{arguments.data, session_of(arguments.data)};
+    files::check_output(arguments.output, inputs);
     if (!arguments.figure.empty()) {
         figures::check_figure(arguments.figure);
-        files::check_output(arguments.figure, {arguments.data});
+        files::check_output(arguments.figure, inputs);
         if (std::filesystem::weakly_canonical(arguments.figure) == std::filesystem::weakly_canonical(arguments.output))
             throw files::bad_input(arguments.figure, "", "the profile's own name", "another one for the figure");
     }

@@ -11,6 +11,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "parts/button_file.h"
+#include "parts/edit.h"
 
 namespace palpa::app {
 namespace {
@@ -71,7 +72,7 @@ void print_table(const parts::Part& part, const mechanics::ButtonCurve& curve) {
 }
 
 void run_button(const ButtonOptions& options) {
-    if (!options.out.empty()) files::check_output(options.out, {options.file});
+    if (!options.out.empty()) files::check_output(options.out, parts::files_of_part(options.file));
     const parts::Part part = read_part_aloud(options.file);
     const mechanics::ButtonCurve curve = parts::button_curve(part);
     const std::string text = files::json_text(json_of(part, curve));

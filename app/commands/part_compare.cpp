@@ -14,6 +14,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "parts/compare.h"
+#include "parts/edit.h"
 
 namespace palpa::app {
 namespace {
@@ -111,7 +112,8 @@ void doubt_button(const parts::Part& part, parts::ComparedDesign& design) {
 void compare(const CompareOptions& options) {
     if (!options.figure.empty()) {
         figures::check_figure(options.figure);
-        files::check_output(options.figure, {options.a, options.b});
+        for (const std::string& part : {options.a, options.b})
+            files::check_output(options.figure, parts::files_of_part(part));
     }
     const parts::Part a = read_part_aloud(options.a), b = read_part_aloud(options.b);
     parts::StiffnessOptions how{{method_named(options.method)}, {}, options.tolerance};

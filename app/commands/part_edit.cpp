@@ -23,7 +23,7 @@ struct EditOptions {
 };
 
 void edit_part(const EditOptions& options) {
-    files::check_output(options.output, {options.file});
+    files::check_output(options.output, parts::files_of_part(options.file));
     parts::EditedPart edited = parts::open_part(options.file);
     const std::size_t there = edited.json["shape"].size();
     for (int i = 0; i < options.undo; ++i) {

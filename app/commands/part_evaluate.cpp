@@ -13,6 +13,7 @@
 #include "files/printable.h"
 #include "files/regular_file.h"
 #include "files/text.h"
+#include "parts/edit.h"
 #include "parts/stiffness.h"
 
 namespace palpa::app {
@@ -91,7 +92,7 @@ void print_row(const parts::MethodResult& result) {
 }
 
 void print_stiffness(const EvaluateOptions& options) {
-    if (!options.out.empty()) files::check_output(options.out, {options.file});
+    if (!options.out.empty()) files::check_output(options.out, parts::files_of_part(options.file));
     const parts::Part part = read_part_aloud(options.file);
     const parts::PartLoad& load = load_named(part, options.load);
     parts::StiffnessOptions how{methods_of(options.methods), {}, options.tolerance};

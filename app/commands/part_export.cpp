@@ -12,6 +12,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "parts/edit.h"
 #include "parts/export/export.h"
 #include "parts/runs_file.h"
 
@@ -87,9 +88,9 @@ files::Json file_json(const parts::ExportedFile& file, ExportKind kind) {
 void export_part(const ExportOptions& options) {
     const ExportKind kind = kind_of(options);
     if (kind == ExportKind::stl || kind == ExportKind::slices) {
-        files::check_output_folder(options.output, {options.file});
+        files::check_output_folder(options.output, parts::files_of_part(options.file));
     } else {
-        files::check_output(options.output, {options.file});
+        files::check_output(options.output, parts::files_of_part(options.file));
     }
     const parts::Part part = read_part_aloud(options.file);
     const std::vector<parts::ExportedFile> written = write_files(part, options, kind);

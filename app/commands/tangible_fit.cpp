@@ -26,14 +26,20 @@ struct TangibleFitArguments {
     bool json = false;
 };
 
+// The mesh file that the device file names; empty if it names none.
+fs::path mesh_file(const TangibleFitArguments& arguments) {
+    const fs::path device = fs::absolute(device_file(arguments.device));
+    const files::Json json = files::read_json(device);
+    const bool names = json.is_object() && json.contains("mesh") && json["mesh"].is_object() &&
+                       json["mesh"].contains("file") && json["mesh"]["file"].is_string();
+    return names ? device.parent_path() / json["mesh"]["file"].get<std::string>() : fs::path();
+}
+
 // The device file with what was fitted; a mesh file is named as seen from the new place.
 files::Json fitted_device(const TangibleFitArguments& arguments, const tangible::DeviceFit& fit) {
     files::Json json = files::read_json(device_file(arguments.device));
-    if (json["mesh"].is_object() && json["mesh"].contains("file")) {
-        const fs::path mesh =
-            fs::absolute(device_file(arguments.device).parent_path()) / json["mesh"]["file"].get<std::string>();
+    if (const fs::path mesh = mesh_file(arguments); !mesh.empty())
         json["mesh"]["file"] = fs::proximate(mesh, fs::absolute(fs::path(arguments.output)).parent_path()).string();
-    }
     json["fit"] = fit_json(fit);
     return json;
 }
@@ -52,7 +58,7 @@ tangible::FitResult fitted(const TangibleFitArguments& arguments, const tangible
 }
 
 void fit_tangible(const TangibleFitArguments& arguments) {
-    files::check_output(arguments.output, {device_file(arguments.device), arguments.presses});
+    files::check_output(arguments.output, {device_file(arguments.device), arguments.presses, mesh_file(arguments)});
     const tangible::SoftDevice device = tangible::read_soft_device(device_file(arguments.device));
     const auto ticks = tangible::read_presses(arguments.presses, tangible::make_device_model(device));
     const tangible::FitResult result = fitted(arguments, device, ticks);

@@ -770,8 +770,8 @@ inline constexpr const char* pageNotPaired = "Not paired with a desk.";
 inline constexpr const char* pageMayDelete =
     "The browser may delete stored trials when space is short: send or export them, or put Palpa on the home screen.";
 inline constexpr const char* pageExportIt = "NOT stored: export it";
-inline constexpr const char* pageStoredUnsent = "{} trial(s) stored on this tablet, not yet at the desk.";
-inline constexpr const char* pageStored = "{} trial(s) stored on this tablet.";
+inline constexpr const char* pageStoredUnsent = "Stored on this tablet, not yet at the desk: {} (trials and answers).";
+inline constexpr const char* pageStored = "Stored on this tablet: {} (trials and answers).";
 inline constexpr const char* pageTheyAreHere = "The trials are on this tablet.";
 inline constexpr const char* pageTheyAreAtDesk = "The trials are at the desk.";
 inline constexpr const char* pageSomeAreHere =
@@ -781,7 +781,7 @@ inline constexpr const char* pageNoneIsHere = "The trials are at the desk or in 
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
 inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";
 inline constexpr const char* pageSettingsNotStored = "Settings are not stored: the storage of this browser is full.";
-inline constexpr const char* pageUnsaved = "{} trial(s) NOT stored: use Export.";
+inline constexpr const char* pageUnsaved = "NOT stored: {} (trials and answers). Use Export.";
 inline constexpr const char* pageDesignNotStored =
     "The changed part is not stored: {}. Save it to a file before you leave this page.";
 inline constexpr const char* pageCanvas = "Tissue to press on, and its controls";

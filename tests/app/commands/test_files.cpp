@@ -56,6 +56,14 @@ void fill(const TemporaryFolder& folder) {
     write_text_atomically(folder / "scene.json", R"({"name": "s", "tissue": {"map": "in.map"}})");
     write_text_atomically(folder / "protocol.json", R"({"name": "p", "version": "1", "seed": 1, "order": "fixed",
         "conditions": [{"id": "pen", "modality": "pen", "scene": "scene.json"}]})");
+    // that these name others is read before anything else of them
+    write_text_atomically(folder / "part.json", R"({"shape": [{"add": {"all": [{"stl": {"file": "body.stl"}}]}},
+        {"runs": "body.npy"}], "button": {"support": {"curve": "curve.tsv"}}})");
+    write_text_atomically(folder / "device.json", R"({"mesh": {"file": "mesh.msh"}})");
+    fs::create_directory(folder / "session");
+    for (const char* name :
+         {"body.stl", "body.npy", "curve.tsv", "mesh.msh", "session/points.csv", "session/session.json"})
+        write_text_atomically(folder / name, "an input\n");
 }
 
 // Everything in the folder but what the test itself keeps there.
@@ -91,7 +99,13 @@ const std::vector<Writer> kWriters{
     {"maps compare in.map in.map -o OUT", ".svg", {}},
     {"calibrate fit points.csv -o OUT", "", {"points.csv"}},
     {"calibrate fit points.csv -o profile.json --plot OUT", ".pdf", {}},
+    {"calibrate fit session/points.csv -o OUT", "", {"session/points.csv", "session/session.json"}},
     {"fem solve case.json -o OUT", "", {"case.json"}},
+    {"tangible fit device.json points.csv -o OUT", "", {"device.json", "mesh.msh"}},
+    {"part evaluate part.json -o OUT", "", {"part.json", "body.stl", "body.npy", "curve.tsv"}},
+    {"part button part.json -o OUT", "", {"part.json", "curve.tsv"}},
+    {"part edit part.json --undo 1 -o OUT", "", {"part.json", "body.npy"}},
+    {"part export part.json -o OUT", ".npy", {"body.npy"}},
     {"bench trace scene.json --seconds 1 -o OUT", ".tsv", {}},
 };
 
