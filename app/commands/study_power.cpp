@@ -189,7 +189,10 @@ void add_study_power(CLI::App& study) {
     command->add_option("--reference", options.reference,
                         "condition whose scene the other tests show (default: the first of a primary comparison of "
                         "conditions, else the protocol's first)");
-    command->add_option("--noise", options.noises, "factors on the noise of the simulated eye (default 1)")
+    command
+        ->add_option("--noise", options.noises,
+                     "factors on the noise of the simulated eye, and of the felt stiffness in choices without a scene "
+                     "(default 1)")
         ->delimiter(',')
         ->check(CLI::Range(0.05, 20.0));
     command->add_option("--runs", options.runs, "number of simulated studies of each kind (default 100)")
