@@ -73,12 +73,18 @@ std::filesystem::path session_of(const std::filesystem::path& data) {
     return data.filename() == "points.csv" ? data.parent_path() / "session.json" : std::filesystem::path();
 }
 
+// What it says; null if there is none.
+files::Json read_session(const std::filesystem::path& data) {
+    const std::filesystem::path file = session_of(data);
+    if (file.empty() || !std::filesystem::exists(file)) return {};
+    files::Json session = files::read_json(file);
+    return session.is_object() ? session : files::Json();
+}
+
 // What the session says of the levels; options take precedence.
 void take_session(const FitArguments& arguments, calibration::CalibrateOptions& options) {
-    const std::filesystem::path file = session_of(arguments.data);
-    if (file.empty() || !std::filesystem::exists(file)) return;
-    const files::Json session = files::read_json(file);
-    if (!session.is_object()) return;
+    const files::Json session = read_session(arguments.data);
+    if (session.is_null()) return;
     const files::Json level = session.value("level", files::Json());
     const files::Json area = session.value("full_contact_area_px2", files::Json());
     if (!options.level && level.is_string()) options.level = parsed(level.get<std::string>(), kLevels);
@@ -219,7 +225,10 @@ void add_fit(CLI::App& calibrate) {
     command->callback([command, arguments] {
         refuse_unused(*command, "--seed", arguments->options.bootstrap_fits > 0, "--bootstrap above 0");
         arguments->full_area_given = command->count("--full-contact-area-px2") > 0;
-        refuse_unused(*command, "--full-contact-area-px2", arguments->level == "contact_area", "--level contact_area");
+        const files::Json session = arguments->level == "auto" ? read_session(arguments->data) : files::Json();
+        const bool by_area = !session.is_null() && session.value("level", files::Json()) == "contact_area";
+        refuse_unused(*command, "--full-contact-area-px2", by_area || arguments->level == "contact_area",
+                      "--level contact_area");
         fit(*arguments);
     });
 }

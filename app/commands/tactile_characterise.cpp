@@ -216,6 +216,8 @@ void check_characterise(const CharacteriseOptions& options) {
     // tables of two runs would stand side by side
     files::check_new(std::filesystem::path(options.folder) / "characterise.json");
     if (options.compensation.empty()) files::check_new(std::filesystem::path(options.folder) / "compensation.json");
+    for (const double stiffness : options.stiffness_N_per_mm)
+        files::check_new(std::filesystem::path(options.folder) / table_name(1e3 * stiffness));
 }
 
 // One stiffness: strokes, line, and its entry in the report.

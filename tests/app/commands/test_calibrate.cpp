@@ -112,6 +112,10 @@ TEST_CASE("calibrate fit: a session says what its levels are; profiles of areas 
         const Json profile = read_json(session / "p.json");
         CHECK(profile["level"] == "contact_area");
         CHECK(profile["full_contact_area_px2"] == full_px2);
+        CHECK(calibrate("fit " + (session / "points.csv").string() + " --full-contact-area-px2 9000 --model power -o " +
+                        (session / "own.json").string())
+                  .status == 0);
+        CHECK(read_json(session / "own.json")["full_contact_area_px2"] == 9000.0);  // an option says otherwise
     }
     const auto profile = [&](const char* full) { return (folder / full / "p.json").string(); };
     const Called compared = calibrate("compare " + profile("8000") + " " + profile("12000") + " --json");

@@ -155,6 +155,9 @@ TEST_CASE("characterise and identify: what cannot be is refused with 2") {
     refused(scene + " --simulate --virtual-time --depth-mm 9 --stiffness-N-per-mm 0.5,2",
             "found 2 at a depth of 9 mm, where the force limit of 15 N holds the force");
     refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0.5,0.5", "found 0.5 twice");
+    files::write_text_atomically(slab.file("stiffness-0.5-N-per-mm.tsv"), "somebody's own\n");
+    refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0.5 -o " + slab.folder.path().string(),
+            "stiffness-0.5-N-per-mm.tsv");
     refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0.3 --force-limit-N 100 --depth-mm 40",
             "--depth-mm: found 40, expected at most");
 }
