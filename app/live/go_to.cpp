@@ -19,7 +19,7 @@ void close_calibrate(CalibrateForm& form, App& app) {
 }
 
 void open_maps(platform::Window& window, App& app) {
-    if (!may_show_maps(app.session.trial)) {
+    if (!may_show_maps(*app.session.plan, app.session.trial)) {
         app.notices.note = words::kMapsHidden;
         if (bool* menu = menu_of(app.doing)) *menu = false;
         return;
@@ -31,7 +31,7 @@ void open_maps(platform::Window& window, App& app) {
 
 // The results show where nodules were, as maps do.
 void open_history(platform::Window& window, App& app) {
-    if (!may_show_maps(app.session.trial)) {
+    if (!may_show_maps(*app.session.plan, app.session.trial)) {
         app.notices.note = words::kMapsHidden;
         return;
     }

@@ -276,7 +276,7 @@ void turn_tissue(platform::Window& window, App& app) {
 }
 
 void turn_if_shown(platform::Window& window, App& app) {
-    if (may_show_maps(app.session.trial)) turn_tissue(window, app);
+    if (may_show_maps(*app.session.plan, app.session.trial)) turn_tissue(window, app);
 }
 
 bool not_touched(const App& app) {

@@ -7,6 +7,7 @@
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "files/text.h"
+#include "scene/tissue.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
 #include "stiffnessmaps/stiffness.h"
@@ -211,7 +212,9 @@ void draw_controls(const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wi
 
 }  // namespace
 
-bool may_show_maps(const session::Trial& trial) { return trial.mode == session::TrialMode::practice || trial.finished; }
+bool may_show_maps(const scene::Plan& plan, const session::Trial& trial) {
+    return trial.mode == session::TrialMode::practice || trial.finished || scene::parts_of(plan.tissue) != nullptr;
+}
 
 void choose_map(const std::string& file, MapBrowser& browser) {
     try {
@@ -259,7 +262,7 @@ void add_pin(const Eigen::Vector2d& p_m, MapBrowser& browser) {
 void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& wishes) {
     const WindowSize window = gui.size_px();
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
-    if (!may_show_maps(shown.trial)) {
+    if (!may_show_maps(shown.plan, shown.trial)) {
         begin_panel("map hidden", {0.0f, 0.0f, window.width, window.height}, gui);
         back_button(gui, wishes);
         wrapped_text(words::kMapsHidden);

@@ -32,8 +32,8 @@ struct MapBrowser {
 };
 inline constexpr std::size_t kPins = 4;
 
-// False during a test, whose nodules stay hidden until it is finished; in practice they are shown anyway.
-bool may_show_maps(const session::Trial& trial);
+// False during a test, whose nodules stay hidden until it is finished; in practice they are shown anyway, and parts have none.
+bool may_show_maps(const scene::Plan& plan, const session::Trial& trial);
 
 // Opens the browser on the scene's own map, or on the first of the list. Problems are shown in the browser.
 std::shared_ptr<MapBrowser> make_map_browser(const scene::Scene& scene, std::vector<Choice> maps);

@@ -77,7 +77,8 @@ void trial_page(const Shown& shown, const Gui& gui, Wishes& wishes) {
         wishes.again = true;
     if (big_button(words::kGuidedStart, "", {}, gui)) wishes.guided = true;
     if (!shown.notices.keeps_trials &&
-        big_button(words::kHistory, words::kKeyHistory, {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
+        big_button(words::kHistory, words::kKeyHistory,
+                   {0.0f, kTarget_mm, may_show_maps(shown.plan, shown.trial), false}, gui))
         wishes.screen = Screen::history;
     if (shown.notices.keeps_trials) {
         const int where = ways(words::kOnThisTablet, {{words::kTrials}, {words::kStudies}}, gui);
@@ -119,7 +120,8 @@ void experimenter_page(const Shown& shown, const Gui& gui, ViewState& view, Wish
     if (big_button(words::kDeviceCheck, words::kKeyDevices, {0.0f, kTarget_mm, true, false, words::kHintDevices}, gui))
         wishes.screen = Screen::devices;
     if (big_button(words::kCalibratePressure, "", {}, gui)) wishes.screen = Screen::calibrate;
-    if (big_button(words::kMaps, words::kKeyMaps, {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
+    if (big_button(words::kMaps, words::kKeyMaps, {0.0f, kTarget_mm, may_show_maps(shown.plan, shown.trial), false},
+                   gui))
         wishes.screen = Screen::maps;
     const bool devices = shown.tactile != nullptr;
     if (!shown.notices.keeps_trials &&

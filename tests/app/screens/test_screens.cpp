@@ -312,7 +312,7 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
     const Trace whole = read_trace(default_trace());
     begin_trial({}, whole.info, TrialMode::test, session);
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
-    REQUIRE_FALSE(may_show_maps(session.trial));
+    REQUIRE_FALSE(may_show_maps(*session.plan, session.trial));
     Screens screens;
     screens.doing = BrowsingMaps{};
     screens.view.maps = make_map_browser(session.scene, map_choices());
@@ -331,8 +331,12 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
     CHECK(coloured(session) < 2000);  // the panels are grey
     for (const Sample& sample : finished_trace(*session.plan, session.state).samples) take_sample(sample, session);
     REQUIRE(session.trial.finished);
-    CHECK(may_show_maps(session.trial));
+    CHECK(may_show_maps(*session.plan, session.trial));
     CHECK(coloured(session) > 100000);
+    session.scene = load_scene("button");  // a part has nodules neither to find nor to hide
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    begin_trial({}, whole.info, TrialMode::test, session);
+    CHECK(may_show_maps(*session.plan, session.trial));
 }
 
 TEST_CASE("screens: a map that cannot be read leaves the one that is shown, and says why") {
