@@ -61,9 +61,9 @@ void fill(const TemporaryFolder& folder) {
         {"runs": "body.npy"}], "button": {"support": {"curve": "curve.tsv"}}})");
     write_text_atomically(folder / "device.json", R"({"mesh": {"file": "mesh.msh"}})");
     fs::create_directory(folder / "session");
-    for (const char* name :
-         {"body.stl", "body.npy", "curve.tsv", "mesh.msh", "session/points.csv", "session/session.json"})
+    for (const char* name : {"body.stl", "body.npy", "curve.tsv", "mesh.msh", "session/points.csv"})
         write_text_atomically(folder / name, "an input\n");
+    write_text_atomically(folder / "session/session.json", "{\"level\": \"pressure\"}\n");
 }
 
 // Everything in the folder but what the test itself keeps there.
