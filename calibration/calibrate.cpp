@@ -53,7 +53,10 @@ LevelsDelivered levels_of(const FitPoints& points, LevelRange range) {
         const double step = points.level(i) - points.level(i - 1);
         if (step <= 0.0 || points.level(i) > range.highest) continue;
         if (!(step >= levels.smallest_step)) levels.smallest_step = step;
-        if (step <= levels.widest_gap) continue;
+        constexpr double kEqual = 1e-6;  // of a step: levels are decimal numbers
+        if (std::abs(step - levels.widest_gap) <= kEqual * step) ++levels.equal_gaps;
+        if (step <= (1.0 + kEqual) * levels.widest_gap) continue;
+        levels.equal_gaps = 1;
         levels.widest_gap = step;
         levels.gap_from = points.level(i - 1);
     }

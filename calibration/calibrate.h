@@ -31,6 +31,7 @@ struct LevelsDelivered {
     double smallest_step = platform::kMissing;
     double widest_gap = platform::kMissing;  // between neighbours within the device's range
     double gap_from = platform::kMissing;
+    int equal_gaps = 0;  // as wide as the widest, the first of which begins at gap_from
 };
 
 // Points whose prediction by a fit without them is off by more than 8 robust scales. Of two readings of one level that differ

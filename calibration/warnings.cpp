@@ -97,8 +97,10 @@ void about_errors(const Calibration& calibration, const Words& words, std::vecto
 void about_data(const Calibration& calibration, const Words& words, std::vector<std::string>& out) {
     const LevelsDelivered& levels = calibration.levels;
     if (levels.widest_gap > 0.15 * words.width) {
+        const std::string others =
+            levels.equal_gaps < 2 ? "" : ", nor in " + files::counted(levels.equal_gaps - 1, "other gap") + " as wide";
         out.push_back("no point between " + words.at(levels.gap_from) + " and " +
-                      words.at(levels.gap_from + levels.widest_gap) + " " + words.level +
+                      words.at(levels.gap_from + levels.widest_gap) + " " + words.level + others +
                       ": the curve is a guess there");
     }
     constexpr std::size_t kFew = 12;

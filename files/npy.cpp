@@ -108,8 +108,9 @@ struct Layout {
 template <class Out>
 Layout layout_of(std::string_view text, std::size_t data_bytes, const std::string& file) {
     Layout layout;
-    const auto type = after_key(text, "descr", file).substr(0, 5);
-    const std::string bare(type.size() == 5 && type.front() == '\'' ? type.substr(1, 3) : type);  // without its quotes
+    const auto rest = after_key(text, "descr", file);
+    const auto type = rest.substr(0, rest.starts_with('\'') ? std::min(rest.find('\'', 1), rest.size() - 1) + 1 : 5);
+    const std::string bare(type.size() > 2 && type.front() == '\'' ? type.substr(1, type.size() - 2) : type);
     if constexpr (std::is_same_v<Out, std::int32_t>) {
         if (type != "'<i4'") throw bad_input(file, "descr", shown(bare), "'<i4' (little-endian int32)");
     } else {

@@ -51,13 +51,14 @@ void load(const RunOptions& options, App& app) {
     app.options = options;
     app.settings_path = settings_file();
     std::string problem;
-    app.settings = app.kept_settings = load_settings(app.settings_path, problem);
+    app.settings = load_settings(app.settings_path, problem);
     if (!problem.empty()) app.notices.problems.push_back(problem);
     if (options.test) app.settings.test_mode = true;
     if (options.practice) app.settings.test_mode = false;
     if (options.left_handed) app.settings.left_handed = true;
     if (options.width_px > 0) app.settings.width_px = options.width_px;
     if (options.height_px > 0) app.settings.height_px = options.height_px;
+    app.kept_settings = app.settings;  // what the command line asks for is for this run and is not kept
     if (!options.protocol.empty()) return load_study(options, app);
     const std::filesystem::path data = user_folder();
     if (app.keeper == nullptr && options.trace.empty() && !data.empty()) app.history_folder = data / "history";
@@ -70,6 +71,7 @@ void load(const RunOptions& options, App& app) {
         const std::string& mode = app.trace->info.mode;
         if (!options.test && !options.practice && !mode.empty())
             app.settings.test_mode = session::mode_of(app.trace->info) == session::TrialMode::test;
+        app.kept_settings = app.settings;  // nor is what a recording asks for
     }
     const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
     scene::Scene scene;

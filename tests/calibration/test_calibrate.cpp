@@ -314,6 +314,10 @@ TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
     CHECK(any_with(warnings, "are extrapolated"));
     CHECK(any_with(warnings, "no point between 40 % and 70 %"));
     CHECK(any_with(warnings, "only 5 distinct levels"));
+    few = {};
+    for (const double x : {0.1, 0.3, 0.5, 0.7, 0.9}) add_row(x, 0.1 * std::exp(4.0 * x), 0, few);
+    CHECK(
+        any_with(calibrate(few, {}).warnings, "no point between 10 % and 30 % pressure, nor in 3 other gaps as wide"));
 }
 
 TEST_CASE("calibrate: a press that was broken off after its first point does not keep the others from their curve") {

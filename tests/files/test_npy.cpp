@@ -97,6 +97,8 @@ TEST_CASE("hard case 31: npy with impossible sizes, other types and cut ends") {
     CHECK(contains(said(dictionary("nonsense")), "shape"));
     CHECK(contains(said(with_header("{'descr': '>f4', 'fortran_order': False, 'shape': (1,), }", "abcd")),
                    "descr: found '>f4', expected '<f4' or '<f8' (little-endian float32 or float64)"));
+    CHECK(contains(said(with_header("{'descr': '<c16', 'fortran_order': False, 'shape': (1,), }", "abcd")),
+                   "descr: found '<c16', expected"));
     CHECK(contains(said(with_header("{'descr': '<f4', 'fortran_order': True, 'shape': (1,), }", "abcd")),
                    "C order, as numpy.ascontiguousarray makes it"));
     CHECK(contains(said(with_header("{'fortran_order': False, 'shape': (1,), }", "abcd")), "descr"));

@@ -400,3 +400,27 @@ TEST_CASE("live: a finger without a sensor is named as soon as its press shows i
     CHECK(desk.app.notices.pressure_notes[0] == words::filled(words::kReportsConstant, {"finger"}));
     CHECK(desk.app.notices.offer_hold);
 }
+
+TEST_CASE("live: what the command line asks for is for this run and is not kept as the person's choice") {
+    const TemporaryFolder folder;
+    const char* before = std::getenv("XDG_CONFIG_HOME");
+    const std::string config = before == nullptr ? "" : before;
+    setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+    RunOptions options;
+    options.left_handed = options.test = true;
+    options.width_px = 900;
+    App app;
+    load(options, app);
+    CHECK(app.settings.left_handed);
+    CHECK(app.settings.test_mode);
+    app.settings.text_percent = 120;  // chosen in the menu
+    keep_settings(app);
+    std::string problem;
+    const Settings kept = load_settings(app.settings_path, problem);
+    CHECK(problem.empty());
+    CHECK(kept.text_percent == 120);
+    CHECK_FALSE(kept.left_handed);
+    CHECK_FALSE(kept.test_mode);
+    CHECK(kept.width_px == Settings{}.width_px);
+    before == nullptr ? unsetenv("XDG_CONFIG_HOME") : setenv("XDG_CONFIG_HOME", config.c_str(), 1);
+}
