@@ -11,6 +11,7 @@
 #include "app/screens/frame.h"
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/part_screen.h"
 #include "app/screens/screenshot.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
@@ -34,6 +35,7 @@ void take_due_rows(App& app, double now_s, std::vector<platform::Sample>& out) {
 
 void take(const platform::Sample& sample, App& app) {
     session::take_sample(sample, app.session);
+    note_press(app.session.state, sample.t_host_s, app.view.part);
     if (app.waiting_s.size() < app.waiting_s.capacity()) app.waiting_s.push_back(sample.t_host_s);
     // a trace has finished its trial; its presses are its own, so go_to() is not needed
     if (app.session.trial.finished && std::holds_alternative<Palpating>(app.doing)) app.doing = back_to_trial(app);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/screens/force_bar.h"
 #include "app/screens/plot.h"
@@ -17,26 +18,8 @@ using scene::PartTissue;
 using scene::PartWork;
 
 constexpr std::size_t kMostPoints = 4000;  // of a press that is kept for the curves
-constexpr float kPlots_mm = 50.0f;         // height of the curves
-
-// Notes the press for the curves; a new press moves the one before to `last`.
-void note_press(const Shown& shown, const PartWork& work, std::size_t designs, PartView& view) {
-    const bool down = shown.state.touch.down && work.touching;
-    if (down && !view.was_down) {
-        view.began_s = shown.now_s;
-        for (std::size_t i = 0; i < designs; ++i) {
-            view.last[i] = std::move(view.press[i]);
-            view.press[i].clear();
-        }
-    }
-    view.was_down = down;
-    if (!down) return;
-    for (std::size_t i = 0; i < designs; ++i) {
-        if (view.press[i].size() < kMostPoints)
-            view.press[i].push_back({static_cast<float>(shown.now_s - view.began_s),
-                                     static_cast<float>(work.force_N[i]), static_cast<float>(work.depth_m[i])});
-    }
-}
+constexpr float kBetweenPoints_s = 0.01f;
+constexpr float kPlots_mm = 50.0f;  // height of the curves
 
 void draw_press(const Plot& plot, const std::vector<PressPoint>& points, bool over_time, ImU32 colour, float width_px,
                 ImDrawList& draw) {
@@ -320,10 +303,27 @@ std::vector<std::string> materials_of(const PartTissue& tissue) {
     return names;
 }
 
+void note_press(const scene::State& state, double now_s, PartView& view) {
+    const PartWork* work = scene::part_work_of(state.tissue);
+    const bool down = work != nullptr && state.touch.down && work->touching;
+    const bool begins = down && !view.was_down;
+    view.was_down = down;
+    if (begins) {
+        view.began_s = now_s;
+        view.last = std::exchange(view.press, {});
+    }
+    const auto t_s = static_cast<float>(now_s - view.began_s);
+    const std::vector<PressPoint>& points = view.press[0];
+    if (!down || points.size() >= kMostPoints) return;
+    if (!points.empty() && t_s < points.back().t_s + kBetweenPoints_s) return;
+    for (std::size_t i = 0; i < view.press.size(); ++i)
+        view.press[i].push_back({t_s, static_cast<float>(work->force_N[i]), static_cast<float>(work->depth_m[i])});
+}
+
 void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     const PartTissue& tissue = *scene::parts_of(shown.plan.tissue);
     const PartWork& work = *scene::part_work_of(shown.state.tissue);
-    note_press(shown, work, tissue.designs.size(), view.part);
+    note_press(shown.state, shown.now_s, view.part);
     if (!layout.controls) {
         draw_too_small();
         return;

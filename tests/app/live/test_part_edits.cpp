@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdlib.h>
 
+#include "app/screens/part_screen.h"
 #include "app/screens/words.h"
 #include "files/text.h"
 #include "scene/tissue.h"
@@ -262,4 +263,33 @@ TEST_CASE(
     CHECK_FALSE(offered((other / "scene.json").string()));
     files::write_text_atomically(home.folder / "bar.json", text);  // mended since
     CHECK_FALSE(offered(home.scene()));
+}
+
+TEST_CASE("part screen: a press that begins and ends between two frames stands in the curves, from its beginning") {
+    const Home home;
+    Desk desk(home.scene());
+    const scene::ScreenArea& area = desk.app.session.state.screen;
+    platform::Sample sample;
+    sample.pointer_id = 4;
+    sample.tool = platform::Tool::pen;
+    sample.phase = platform::Phase::down;
+    PartView& view = desk.app.view.part;
+    for (int i = 0; i <= 100; ++i) {  // a second
+        sample.t_host_s = 10.0 + 0.01 * i;
+        sample.x_px = area.x_px + 0.5 * area.width_px;
+        sample.y_px = area.y_px + 0.5 * area.height_px;
+        sample.pressure = 0.05 + 0.005 * i;
+        session::take_sample(sample, desk.app.session);
+        note_press(desk.app.session.state, sample.t_host_s, view);
+        sample.phase = platform::Phase::move;
+    }
+    REQUIRE(view.press[0].size() > 10);
+    CHECK(view.press[0].front().t_s == 0.0f);
+    CHECK(view.press[0].front().force_N < 0.3f * view.press[0].back().force_N);
+    CHECK(view.press[0].back().t_s > 0.3f);
+    sample.phase = platform::Phase::up;
+    session::take_sample(sample, desk.app.session);
+    note_press(desk.app.session.state, 11.1, view);
+    desk.show_frame();
+    CHECK(view.press[0].front().t_s == 0.0f);
 }
