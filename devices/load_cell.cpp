@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "devices/counts_stream.h"
 
@@ -16,6 +18,14 @@ bool parse(const std::string& line, LoadCellLine& out) {
     const auto raw = std::from_chars(time.ptr + 1, end, out.raw);
     if (raw.ec != std::errc() || raw.ptr != end) return false;
     return out.raw >= -(1 << 23) && out.raw < (1 << 23);
+}
+
+double usual_step_us(const LoadCellClock& clock) {
+    auto steps = clock.recent_us;
+    const auto quartile = steps.begin() + 4;
+    static_assert(std::tuple_size_v<decltype(steps)> == 16);
+    std::nth_element(steps.begin(), quartile, steps.end());
+    return *quartile;
 }
 
 class LoadCell : public ForceSensor {
@@ -94,15 +104,23 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
     }
     clock.last_us = t_us;
     clock.total_us += step_us;
-    ++clock.steps;
-    constexpr std::int64_t kLearn = 16;
-    if (clock.period_us == 0.0) clock.period_us = step_us;
-    if (step_us < 1.5 * clock.period_us) clock.period_us += (step_us - clock.period_us) / 8.0;  // follows a slow drift
-    if (step_us < 0.7 * clock.period_us) clock.period_us = step_us;
+    const std::size_t recent = clock.recent_us.size();
+    const std::int32_t before_us = clock.recent_us[static_cast<std::size_t>(clock.steps - 1) % recent];
+    clock.recent_us[static_cast<std::size_t>(clock.steps) % recent] = step_us;
+    const bool known = ++clock.steps > static_cast<std::int64_t>(recent);
     const std::int64_t garbled = health.malformed - clock.malformed;
     clock.malformed = health.malformed;
-    if (clock.steps > kLearn && step_us > 1.5 * clock.period_us)
-        health.lost += std::max<std::int64_t>(0, std::lround(step_us / clock.period_us) - 1 - garbled);
+    const std::int64_t lost_before = std::exchange(clock.lost_before, 0);
+    if (!known) return true;
+    const double period_us = usual_step_us(clock);
+    const auto missing = [&](double us) { return std::lround(us / period_us); };
+    if (step_us > 1.5 * period_us) {
+        clock.lost_before = std::max<std::int64_t>(0, missing(step_us) - 1 - garbled);
+        health.lost += clock.lost_before;
+    } else if (step_us < 0.7 * period_us && lost_before > 0) {
+        const std::int64_t lost = std::max<std::int64_t>(0, missing(static_cast<double>(before_us) + step_us) - 2);
+        health.lost -= std::max<std::int64_t>(0, lost_before - lost);  // the reading before was late
+    }
     return true;
 }
 

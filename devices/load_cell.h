@@ -5,6 +5,7 @@
 // micros() every 71.6 minutes, losses (seen as gaps of the clock), lines that come twice or out of order, a port that is
 // unplugged and comes back. Not supported yet: other line formats. Tried with devices/simulators only.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,12 +33,14 @@ struct LoadCellClock {
     bool started = false;
     std::uint32_t last_us = 0;
     std::int64_t total_us = 0;
-    double period_us = 0.0;  // shortest usual step, learned from the stream
+    std::array<std::int32_t, 16> recent_us{};  // steps
     std::int64_t steps = 0;
-    std::int64_t malformed = 0;  // lines that were garbled up to the last good one
+    std::int64_t lost_before = 0;  // by the step before
+    std::int64_t malformed = 0;    // lines that were garbled up to the last good one
 };
-// Returns false for a line that came twice or late. Counts losses once the period is known (after 16 steps); what is missing
-// from the clock because its line was garbled is not lost as well.
+// Returns false for a line that came twice or late. Counts losses once the period is known (after 16 steps: their lower
+// quartile, which neither gaps nor single short steps change); what is missing from the clock because its line was garbled is
+// not lost as well, nor what a reading that is stamped late seems to skip.
 bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health);
 
 struct LoadCellOptions {

@@ -7,7 +7,7 @@ namespace palpa::scene {
 
 TangibleOptions read_tangible(files::JsonReader json, const std::filesystem::path& scene_file,
                               const std::filesystem::path& assets) {
-    json.only({"device", "at_mm", "force_scale", "depth_scale", "plant", "fidelity", "command"});
+    json.only({"device", "at_mm", "force_scale", "depth_scale", "rate_share", "plant", "fidelity", "command"});
     TangibleOptions options;
     options.device = find_file(json.text("device"), scene_file, assets / "devices");
     if (json.has("at_mm")) {
@@ -20,6 +20,7 @@ TangibleOptions read_tangible(files::JsonReader json, const std::filesystem::pat
     }
     options.force_scale = json.number("force_scale", {0.0, 1e3, true}, options.force_scale);
     options.depth_scale = json.number("depth_scale", {0.0, 1e3, true}, options.depth_scale);
+    options.rate_share = json.number("rate_share", {0.01, 1.0}, options.rate_share);
     if (json.has("plant")) {
         options.plant = json.text("plant");
         if (options.plant != "exact") options.plant = find_file(options.plant, scene_file, assets / "plants").string();

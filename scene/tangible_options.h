@@ -16,6 +16,7 @@ struct TangibleOptions {
     std::optional<Eigen::Vector2d> at_m;  // place on the tissue that is felt; absent: that of the latest touch
     double force_scale = 1.0;             // the device's force over that of the tissue
     double depth_scale = 1.0;             // depth in the tissue over that of the device
+    double rate_share = 1.0;              // of the actuators' rates, that the loop makes use of
     // Who stands in for hardware: nobody (empty), the device's own model ("exact"), or the file of a model that differs
     // from it (assets/plants).
     std::string plant;

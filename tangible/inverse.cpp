@@ -54,7 +54,7 @@ void bound(const Tick& tick, const DeviceState& state, int unknown, double& lowe
         lower = std::max(lower, actuator.lower);
         upper = std::min(upper, actuator.upper);
         if (tick.options.slew && actuator.rate_per_s > 0.0)
-            slew = std::min(slew, actuator.rate_per_s * std::max(tick.options.dt_s, 0.0));
+            slew = std::min(slew, tick.options.rate_share * actuator.rate_per_s * std::max(tick.options.dt_s, 0.0));
     }
     const double from = std::clamp(tick.before[static_cast<std::size_t>(driver)], lower, upper);
     lower = std::max(lower, from - slew);

@@ -31,8 +31,9 @@ struct Wanted {
 
 struct InverseOptions {
     Fidelity fidelity = Fidelity::step;
-    double dt_s = 0.01;  // since the last step; for the slew limits alone
-    bool slew = true;    // limit changes by rate_per_s
+    double dt_s = 0.01;       // since the last step; for the slew limits alone
+    bool slew = true;         // limit changes by rate_per_s
+    double rate_share = 1.0;  // of rate_per_s
     bool rate_term = true;
 };
 

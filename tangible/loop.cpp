@@ -171,7 +171,7 @@ const char* text_of(TickFault fault) {
         case TickFault::bad_input:
             return "a reading is not a number";
         case TickFault::no_equilibrium:
-            return "the device gives way: no equilibrium under this force";
+            return "no equilibrium of the device was found under this force";
         case TickFault::slow:
             return "the device's equilibrium was not found in time";
     }

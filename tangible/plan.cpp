@@ -52,6 +52,7 @@ std::string_view name_of(CommandKind command) {
 LoopOptions loop_options(const scene::TangibleOptions& scene) {
     LoopOptions options;
     options.inverse.fidelity = fidelity_named(scene.fidelity);
+    options.inverse.rate_share = scene.rate_share;
     options.command = command_named(scene.command);
     return options;
 }

@@ -278,7 +278,9 @@ void run_tangible(TangibleRunArguments arguments) {
         check_depth(arguments.press, "depth_mm", row.depth_m, *plan->model);
         if (row.depth_m > deepest_m) deepest_m = row.depth_m;  // NaN: a press by force
     }
-    const std::string beside = plan->place_follows ? rows_beside(press, scene_plan.area) : "";
+    // a tissue that is one curve is the same everywhere
+    const bool has_places = plan->place_follows && !scene::is_curve(scene.tissue);
+    const std::string beside = has_places ? rows_beside(press, scene_plan.area) : "";
     const bool by_force = !press.empty() && std::isfinite(press.front().force_N);
     const session::TangibleResult result = run_as_asked(arguments, plant_name, std::move(press), plan);
     files::Json json{{"scene", scene.name}, {"seed", nullptr}, {"plant", nullptr}};

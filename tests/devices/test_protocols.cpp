@@ -138,9 +138,36 @@ TEST_CASE("load cell: the clock tells loss, repetition, lateness and a reset boa
     CHECK_FALSE(take_time(t_us - 12500, clock, health));
     CHECK(health.lost == 2);
     CHECK(health.reordered == 1);
-    LoadCellClock later{true, 900000000u, 900000000, 12500.0, 100};
+    LoadCellClock later;
+    later.started = true;
+    later.last_us = 900000000u;
     CHECK(take_time(5, later, health));
     CHECK(health.lost == 2);
+}
+
+TEST_CASE(
+    "load cell: a reading that is stamped late loses nothing, and readings that are gone are counted all the same") {
+    SensorHealth health;
+    LoadCellClock clock;
+    std::uint32_t t_us = 0;
+    for (int i = 0; i < 40; ++i) take_time(t_us += 12500, clock, health);
+    for (const std::uint32_t late_us : {3000u, 9000u, 12430u}) {
+        take_time(t_us + 12500 + late_us, clock, health);
+        t_us += 12500;
+        for (int i = 0; i < 100; ++i) take_time(t_us += 12500, clock, health);
+        CHECK(health.lost == 0);
+    }
+    for (int i = 0; i < 50; ++i) take_time(t_us += i % 2 == 0 ? 25000u : 12500u, clock, health);
+    CHECK(health.lost == 25);
+    for (int i = 0; i < 50; ++i) take_time(t_us += 12500, clock, health);
+    CHECK(health.lost == 25);
+    LoadCellClock faster;  // a board whose first step was a gap
+    t_us = 0;
+    take_time(t_us, faster, health);
+    take_time(t_us += 50000, faster, health);
+    for (int i = 0; i < 40; ++i) take_time(t_us += 12500, faster, health);
+    take_time(t_us += 25000, faster, health);
+    CHECK(health.lost == 26);
 }
 
 TEST_CASE("ring: every value arrives once and in order, and a full ring says so") {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <random>
@@ -142,6 +143,23 @@ TEST_CASE("tangible loop: wild readings never leave the limits, and nothing is n
         visit_fields(command, [&](const char*, const double& value) { finite = finite && std::isfinite(value); });
         CHECK(finite);
     }
+}
+
+TEST_CASE("tangible loop: the drives go no faster than the scene's share of their rates") {
+    const auto fastest = [](double share) {
+        SmallLoop loop;
+        loop.plan.loop.inverse.rate_share = share;
+        double most_N = 0.0, before_N = loop.tick(0.0, 0.0).actuation[0];
+        for (int k = 1; k < 20; ++k) {
+            const double now_N = loop.tick(0.01 * k, 3e-3 * (k % 2)).actuation[0];
+            most_N = std::max(most_N, std::abs(now_N - before_N));
+            before_N = now_N;
+        }
+        return most_N;
+    };
+    const double rate_N_per_tick = 0.01 * small_strip()->actuators[0].rate_per_s;
+    CHECK(fastest(1.0) > 0.2 * rate_N_per_tick);
+    CHECK(fastest(0.1) <= 0.1 * rate_N_per_tick + 1e-12);
 }
 
 TEST_CASE("tangible loop: for a slow sensor the finger is extrapolated") {

@@ -120,6 +120,21 @@ TEST_CASE("tangible run: a press in virtual time that a signal stops is written 
     CHECK(std::count(ticks.begin(), ticks.end(), '\n') == 1 + kept["ticks"].get<std::ptrdiff_t>());
 }
 
+TEST_CASE(
+    "tangible run: the shipped soft block bears a light press by force, and is pressed in its middle wherever it is "
+    "touched") {
+    const TemporaryFolder folder;
+    std::string press = "t_s\tx_mm\ty_mm\tforce_N\n";
+    for (int i = 0; i <= 100; ++i)
+        press += files::short_number(0.01 * i) + "\t70\t20\t" +
+                 files::short_number(std::min(0.01 * i / 0.3, 1.0) * 0.36) + "\n";
+    files::write_text_atomically(folder / "press.tsv", press);
+    const Called called =
+        palpa_with("tangible run tangible-block --headless --json --press " + (folder / "press.tsv").string());
+    CHECK(result_of(called)["faults"].empty());
+    CHECK(called.err.find("beside") == std::string::npos);
+}
+
 TEST_CASE("tangible run: a replay takes the fidelity and the rate of the run, and says when it is told others") {
     const StripFolder strip;
     const std::string run = "tangible run " + strip.path("scene.json") + " --json --log ";
