@@ -171,7 +171,7 @@ bool move_by_step(const SpherePress& press, SpherePressWork& work) {
 }  // namespace
 
 SpherePress make_sphere_press(const SpherePressBlock& block, double greatest_depth_m) {
-    if (!banded_built_in()) throw SolverError("a soft block needs LAPACK, which this build is without", 0);
+    if (!banded_built_in()) throw SolverError("a soft block is computed on the desk: this build is without LAPACK", 0);
     check_block(block, greatest_depth_m);
     SpherePress press;
     press.block = block;
