@@ -147,26 +147,29 @@ std::vector<Method> methods_for(const PartOptions& options, const std::vector<Pa
     return out;
 }
 
-const parts::Response& first_response(const PartTissue& tissue) {
-    return tissue.designs[0].responses[tissue.first_method];
-}
+}  // namespace
 
-Stage depth_stage(const PartTissue& tissue) {
+Stage depth_stage(const PartTissue& tissue, std::size_t method) {
     if (tissue.designs[0].button) {
         return stage_of(StageForm::depth_part_button,
                         "push button: travel under the force, from a table of its curve; on and off by travel");
     }
-    const parts::Response& response = first_response(tissue);
+    const parts::Response& response = tissue.designs[0].responses[method];
+    double energy_error = response.energy_error, interpolation_error = response.interpolation_error;
+    for (const PartDesign& design : tissue.designs) {  // the greatest of both, or that it is not known
+        if (method >= design.responses.size()) continue;
+        const parts::Response& other = design.responses[method];
+        if (!(other.energy_error <= energy_error)) energy_error = other.energy_error;
+        if (!(other.interpolation_error <= interpolation_error)) interpolation_error = other.interpolation_error;
+    }
     const std::string stations = std::to_string(response.station_m.size()) + " unit loads along the axis";
     if (response.method != Method::voxels)
         return stage_of(StageForm::depth_part_beam, std::string(parts::name_of(response.method)) + ", " + stations,
-                        {percent_of(response.interpolation_error)});
+                        {percent_of(interpolation_error)});
     return stage_of(StageForm::depth_part_voxels,
                     "finite cells, " + std::to_string(response.cells) + " of them, " + stations,
-                    {percent_of(response.energy_error), percent_of(response.interpolation_error)});
+                    {percent_of(energy_error), percent_of(interpolation_error)});
 }
-
-}  // namespace
 
 struct PartCells::Work {
     PartOptions options;
@@ -295,7 +298,7 @@ void describe(const PartTissue& tissue, const Scene& scene, Plan& plan) {
 }
 
 std::vector<Stage> stages(const PartTissue& tissue, const Scene& scene) {
-    std::vector<Stage> out{depth_stage(tissue)};
+    std::vector<Stage> out{depth_stage(tissue, tissue.first_method)};
     if (tissue.options.gesture == PartGesture::pull)
         out.push_back(stage_of(StageForm::tangential_part, "stiffness where the pull began times the way"));
     add_law_stages(scene, {}, StageForm::display_ratio_on_map, StageForm::delay_on_map, out);

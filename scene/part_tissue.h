@@ -112,6 +112,9 @@ Push push_to(const PartTissue& tissue, const Eigen::Vector2d& p_m, double depth_
 void sample_surface(const PartTissue& tissue, const SurfaceEffect& effect, const Contact& contact, const PartWork& work,
                     SurfaceShape& shape);
 
+// How one of the methods computes the depth, and how large its error is.
+Stage depth_stage(const PartTissue& tissue, std::size_t method);
+
 // Whether the load lies in the picture's plane, and does not go into it.
 bool in_plane(const PartTissue& tissue);
 // Whether there is material of the design at p_m of the tissue's plane, at any depth.

@@ -101,9 +101,9 @@ figures::DesignLine line_of(const parts::Part& part, const parts::ComparedDesign
     return {part.name, design.stiffness.stiffness_N_per_m, design.mass_kg, design.stiffness.why_not.empty()};
 }
 
-// A button's spring and latch are keys of their file and no voxels.
+// A button's spring and latch are keys of their file and no voxels; a bare cover has none.
 void doubt_button(const parts::Part& part, parts::ComparedDesign& design) {
-    if (!part.button) return;
+    if (!part.button || std::holds_alternative<std::monostate>(part.button->support)) return;
     std::string& why_not = design.stiffness.why_not;
     why_not = "the spring of its button is left out, of which `palpa part button` tells" +
               (why_not.empty() ? "" : "; " + why_not);

@@ -8,6 +8,7 @@
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
+#include "scene/tissue.h"
 
 namespace palpa::app {
 namespace {
@@ -153,8 +154,16 @@ void page_tabs(const Gui& gui, MenuPage& page) {
     ImGui::Separator();
 }
 
+// The stage as it is now: parts may have been changed to another method.
+scene::Stage as_computed_now(const Shown& shown, const scene::Stage& planned) {
+    const scene::PartTissue* parts = scene::parts_of(shown.plan.tissue);
+    if (parts == nullptr || planned.id != scene::StageId::depth) return planned;
+    return scene::depth_stage(*parts, scene::part_work_of(shown.state.tissue)->method);
+}
+
 void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
-    for (const scene::Stage& stage : stages) {
+    for (const scene::Stage& planned : stages) {
+        const scene::Stage stage = as_computed_now(shown, planned);
         const scene::Meter& meter = shown.state.meters[static_cast<std::size_t>(stage.id)];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();

@@ -103,11 +103,10 @@ void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui
         const int by = s.found_by[i];
         const int sure = by < 0 ? 0 : shown.trial.marks[static_cast<std::size_t>(by)].confidence;
         if (sure > 0) text += words::filled(words::kConfidenceOf, {std::to_string(sure)});
-        // what is deeper than the tissue is known for reads as that depth
-        const double known_m = shown.plan.greatest_depth_m;
-        const bool beyond = debrief.beyond[i] || (known_m > 0.0 && debrief.depth_m[i] > (1.0 - 1e-6) * known_m);
+        // what is deeper than the tissue is known for reads as the depth that it is known for
         if (debrief.depth_m[i] > 0.0)
-            text += words::filled(words::kDownTo, {(beyond ? "> " : "") + fixed(1e3 * debrief.depth_m[i], 1)});
+            text +=
+                words::filled(words::kDownTo, {(debrief.beyond[i] ? "> " : "") + fixed(1e3 * debrief.depth_m[i], 1)});
         wrapped_text(text);
     }
 }

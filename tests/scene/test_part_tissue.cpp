@@ -191,6 +191,21 @@ TEST_CASE("part tissue: the method changes between presses only, in turn") {
     CHECK_FALSE(switch_events(tissue, work));
 }
 
+TEST_CASE(
+    "part tissue: what is said of the depth's error is of the method that answers, and the greatest of both designs") {
+    const Designs designs;
+    const PartTissue tissue = designs.made();
+    for (std::size_t i = 0; i < tissue.methods.size(); ++i) {
+        const Stage stage = depth_stage(tissue, i);
+        CHECK(contains(stage.fidelity, parts::name_of(tissue.methods[i])));
+        CHECK(contains(stage.error, "the model's own error"));
+    }
+    PartTissue other = tissue;
+    REQUIRE(other.designs.size() == 2);
+    other.designs[1].responses[0].interpolation_error = 0.123;
+    CHECK(contains(depth_stage(other, 0).error, "12.3 %"));
+}
+
 TEST_CASE("part tissue: a finger that is led by depth is pushed by the stiffness at its place") {
     const Designs designs;
     const PartTissue tissue = designs.made();
