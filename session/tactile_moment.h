@@ -57,6 +57,11 @@ struct TactileMoment {
     std::int64_t held_steps = 0;
 };
 
+// The force at this moment: none while a fault keeps the devices at rest, whatever was rendered last.
+inline double force_now_N(const TactileMoment& moment) {
+    return moment.stopped || *moment.fault != '\0' ? 0.0 : moment.force_N;
+}
+
 // A device of a run, for logs and screens: every one is called real or simulated.
 struct TactileDevice {
     std::string role;  // "arm", "force sensor", "pins"

@@ -55,7 +55,7 @@ bool device_runs(const Shown& shown) {
 }
 
 double felt_force_N(const Shown& shown) {
-    if (arm_leads(shown)) return shown.tactile->moment.force_N;
+    if (arm_leads(shown)) return session::force_now_N(shown.tactile->moment);
     if (soft_device_leads(shown)) return shown.tangible->moment.wanted_N;
     return shown.state.contact.normal_N;
 }

@@ -45,7 +45,8 @@ void draw_state(const TactileShown& tactile) {
 void draw_force_lines(const TactileShown& tactile, float column_px) {
     const TactileMoment& moment = tactile.moment;
     const std::string limit = in_unit(tactile.force_limit_N, 1.0, 1, "N");
-    value_line(words::kForce, words::filled(words::kOfLimit, {in_unit(moment.force_N, 1.0, 2, "N"), limit}), column_px);
+    value_line(words::kForce,
+               words::filled(words::kOfLimit, {in_unit(session::force_now_N(moment), 1.0, 2, "N"), limit}), column_px);
     if (std::isfinite(moment.sensor_N))
         value_line(words::kForceSensor, in_unit(moment.sensor_N, 1.0, 2, "N"), column_px);
     value_line(words::kDepth, in_unit(moment.depth_m, 1e3, 2, "mm"), column_px);

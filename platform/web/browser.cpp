@@ -82,11 +82,13 @@ EM_JS(void, palpa_listen, (), {
         const code = code_of(event);
         // a button of a dialog that has just been closed keeps the focus until the page is drawn again
         const of_page = document.querySelector('dialog[open]') || (at && at.closest && at.closest('input, button, a') && !at.closest('dialog'));
-        const of_browser = event.altKey || event.metaKey || (event.ctrlKey && !'aqsyz'.includes(String.fromCharCode(code)));
-        if (code === 0 || (is_down && (of_page || of_browser))) return; // whatever is let go was perhaps held before
-        const typed = event.key.length === 1 && !event.ctrlKey ? event.key.charCodeAt(0) : 0;
+        const third = event.getModifierState('AltGraph'); // where it comes with Ctrl and Alt, it is neither of them
+        const ctrl = event.ctrlKey && !third;
+        const of_browser = (event.altKey && !third) || event.metaKey || (ctrl && !'aqsyz'.includes(String.fromCharCode(code)));
+        const typed = [...event.key].length === 1 && !ctrl ? event.key.codePointAt(0) : 0; // any letter, not of ASCII alone
+        if ((code === 0 && typed === 0) || (is_down && (of_page || of_browser))) return; // whatever is let go was perhaps held before
         if (!of_page) event.preventDefault();
-        _palpa_key(is_down ? 1 : 0, code, typed, event.ctrlKey ? 1 : 0, event.shiftKey ? 1 : 0, event.repeat ? 1 : 0);
+        _palpa_key(is_down ? 1 : 0, code, typed, ctrl ? 1 : 0, event.shiftKey ? 1 : 0, event.repeat ? 1 : 0);
     };
     window.addEventListener('keydown', (event) => key(event, true));
     window.addEventListener('keyup', (event) => key(event, false));

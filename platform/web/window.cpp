@@ -134,6 +134,24 @@ double Window::touch_px_per_mm() const {
 
 }  // namespace palpa::platform
 
+namespace {
+
+void append_utf8(int letter, std::string& text) {
+    const auto put = [&](int byte) { text += static_cast<char>(byte); };
+    if (letter < 0x80) return put(letter);
+    if (letter < 0x800) {
+        put(0xc0 | letter >> 6);
+    } else {
+        if (letter < 0x10000) put(0xe0 | letter >> 12);
+        if (letter >= 0x10000) put(0xf0 | letter >> 18);
+        if (letter >= 0x10000) put(0x80 | (letter >> 12 & 0x3f));
+        put(0x80 | (letter >> 6 & 0x3f));
+    }
+    put(0x80 | (letter & 0x3f));
+}
+
+}  // namespace
+
 // The functions that the page calls (platform/web/browser.cpp).
 extern "C" {
 
@@ -177,13 +195,11 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
     event.ctrl = ctrl != 0;
     event.shift = shift != 0;
     event.repeat = repeat != 0;
-    receive_key(event, browser::now_s(), *open_pointers);
-    constexpr int kLatin = 0xff;  // the last character of the font
-    if (down == 0 || typed < ' ' || (typed > '~' && typed < 0xa0) || typed > kLatin || open_pointers->filter == nullptr)
-        return;
+    if (code != 0) receive_key(event, browser::now_s(), *open_pointers);
+    // letters that the font has not are kept in answers all the same
+    if (down == 0 || typed < ' ' || (typed > '~' && typed < 0xa0) || open_pointers->filter == nullptr) return;
     event.kind = WindowEvent::Kind::text;
-    if (typed > '~') event.text += static_cast<char>(0xc0 | (typed >> 6));
-    event.text += static_cast<char>(typed > '~' ? 0x80 | (typed & 0x3f) : typed);
+    append_utf8(typed, event.text);
     open_pointers->filter(event, open_pointers->filter_user);
 }
 

@@ -42,6 +42,11 @@ const tap = async (browser, x, y) => {
     await pen(browser, 'mouseReleased', x, y, 0);
     await frames(browser.page, 3);
 };
+const answersIn = (page) => page.evaluate(() => {
+    const files = (folder) => FS.readdir(folder).filter((name) => !name.startsWith('.')).flatMap((name) =>
+        FS.isDir(FS.stat(`${folder}/${name}`).mode) ? files(`${folder}/${name}`) : [`${folder}/${name}`]);
+    return FS.readFile(files('/studies').find((file) => file.endsWith('ratings_beh.tsv')), {encoding: 'utf8'});
+});
 const begin = async (page) => {
     await at(page, 'instructions');
     await key(page, 'Enter');
@@ -385,16 +390,28 @@ test('with a touch screen, Tab goes on to the next question, and each answer sta
     }
     for (let i = 0; i < 2; ++i) await key(page, 'Enter'); // the first ends the typing
     await at(page, 'instructions');
-    const answers = await page.evaluate(() => {
-        const files = (folder) => FS.readdir(folder).filter((name) => !name.startsWith('.')).flatMap((name) =>
-            FS.isDir(FS.stat(`${folder}/${name}`).mode) ? files(`${folder}/${name}`) : [`${folder}/${name}`]);
-        return FS.readFile(files('/studies').find((file) => file.endsWith('ratings_beh.tsv')), {encoding: 'utf8'});
-    });
+    const answers = await answersIn(page);
     for (const row of ['prof\tnurse', 'hobby\tchess', 'years\t3', 'old\t45']) assert.ok(answers.includes(`n/a\t${row}\n`), answers);
 }, {protocols: {asks: {...tiny, demographics: [
     {id: 'prof', text: 'Your profession'}, {id: 'hobby', text: 'Your hobby'},
     {id: 'years', text: 'Years of experience', from: 0, to: 60}, {id: 'old', text: 'Age', from: 0, to: 99},
 ]}}}));
+
+test('without a touch screen, letters beyond ASCII that a keyboard types stand in the answer', options, () => withDesk(async (browser, desk) => {
+    const {page} = browser;
+    await open(browser, desk.url, '?protocol=asks&participant=5');
+    await at(page, 'questions');
+    await tap(browser, 550, 146);
+    for (const letter of 'Müłßž') { // as a keyboard sends them; page.keyboard.type() sends none of their keys
+        for (const type of ['keyDown', 'keyUp'])
+            await browser.devtools.send('Input.dispatchKeyEvent', {type, key: letter, text: type === 'keyDown' ? letter : undefined, code: 'KeyM'});
+        await frames(page, 4);
+    }
+    for (let i = 0; i < 2; ++i) await key(page, 'Enter'); // the first ends the typing
+    await at(page, 'instructions');
+    const answers = await answersIn(page);
+    assert.ok(answers.includes('n/a\tname\tMüłßž\n'), answers);
+}, {size: {touch: false}, protocols: {asks: {...tiny, demographics: [{id: 'name', text: 'A name'}]}}}));
 
 test('a browser that stores nothing is refused a study, in words', options, () => withDesk(async (browser, desk) => {
     const {page} = browser;

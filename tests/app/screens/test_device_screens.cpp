@@ -74,6 +74,9 @@ TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running,
     silent.moment.fault = "nothing comes from the arm, nor from the pins";
     silent.moment.silent_s = 1234.5;
     silent.moment.stiffness_delay_N_s_per_m = kMissing;
+    CHECK(force_now_N(running.moment) == running.moment.force_N);
+    CHECK(force_now_N(stopped.moment) == 0.0);
+    CHECK(force_now_N(silent.moment) == 0.0);
     TactileShown failed;
     failed.problem =
         "assets/devices/pins-6x6.json: boards[0].port: found nothing at /dev/ttyACM0, expected the serial port of a "
