@@ -213,17 +213,24 @@ TEST_CASE("tangible run: a press deeper than the tissue is known for is named") 
     CHECK(contains(deep.err, "goes 9 mm deep, and the tissue is known for 8 mm"));
 }
 
-TEST_CASE("tangible run: a press beside the tissue is named, unless the place is fixed") {
+TEST_CASE("tangible run: a press beside the tissue is named, unless the place is fixed or the tissue is a curve") {
     const StripFolder strip;
-    files::write_text_atomically(strip.folder / "p.tsv", "t_s\tx_mm\ty_mm\tdepth_mm\n0\t0\t0\t0\n0.2\t500\t0\t2\n");
+    files::Json scene = files::read_json(strip.folder / "scene.json");
+    const files::Json curve = scene["tissue"];
+    scene["tissue"] = {{"map", (kAssets / "maps" / "silicone.map").string()}};
+    files::write_text_atomically(strip.folder / "scene.json", scene.dump());
+    files::write_text_atomically(strip.folder / "p.tsv", "t_s\tx_mm\ty_mm\tdepth_mm\n0\t60\t60\t0\n0.2\t500\t60\t2\n");
     const std::string run =
         "tangible run " + strip.path("scene.json") + " --headless --json --press " + strip.path("p.tsv");
     const Called beside = palpa_with(run);
     CHECK(beside.status == 0);
     CHECK(contains(beside.err, "p.tsv: 1 of 2 rows are beside the tissue (x "));
     CHECK(contains(result_of(beside)["notes"].dump(), "1 of 2 rows are beside the tissue"));
-    files::Json scene = files::read_json(strip.folder / "scene.json");
-    scene["tangible"]["at_mm"] = {0, 0};
+    scene["tangible"]["at_mm"] = {60, 60};
+    files::write_text_atomically(strip.folder / "scene.json", scene.dump());
+    CHECK_FALSE(contains(palpa_with(run).err, "beside the tissue"));
+    scene["tangible"].erase("at_mm");
+    scene["tissue"] = curve;
     files::write_text_atomically(strip.folder / "scene.json", scene.dump());
     CHECK_FALSE(contains(palpa_with(run).err, "beside the tissue"));
 }
