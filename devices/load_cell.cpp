@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <tuple>
+#include <iterator>
 #include <utility>
 
 #include "devices/counts_stream.h"
@@ -22,8 +22,7 @@ bool parse(const std::string& line, LoadCellLine& out) {
 
 double usual_step_us(const LoadCellClock& clock) {
     auto steps = clock.recent_us;
-    const auto quartile = steps.begin() + 4;
-    static_assert(std::tuple_size_v<decltype(steps)> == 16);
+    const auto quartile = steps.begin() + std::ssize(steps) / 4;
     std::nth_element(steps.begin(), quartile, steps.end());
     return *quartile;
 }

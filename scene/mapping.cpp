@@ -55,4 +55,15 @@ bool on_tissue(const View& view, const Eigen::Vector2d& p_m) {
     return off.x() <= 0.5 * view.area.size_m.x() && off.y() <= 0.5 * view.area.size_m.y();
 }
 
+ScreenArea input_area(const View& view, const ScreenArea& screen) {
+    constexpr double kRoundOff_px = 1e-6;  // at the very edge, round-off would decide whether a place is on the tissue
+    const Eigen::Vector2d half_px =
+        (view.axes * (0.5 * view.area.size_m)).cwiseAbs().cwiseProduct(view.input_px_per_m) -
+        Eigen::Vector2d::Constant(kRoundOff_px);
+    const Eigen::Vector2d from_px(screen.x_px, screen.y_px), size_px(screen.width_px, screen.height_px);
+    const Eigen::Vector2d low_px = from_px.cwiseMax(view.centre_px - half_px);
+    const Eigen::Vector2d extent_px = (from_px + size_px).cwiseMin(view.centre_px + half_px) - low_px;
+    return {extent_px.x(), extent_px.y(), low_px.x(), low_px.y(), screen.px_per_m};
+}
+
 }  // namespace palpa::scene

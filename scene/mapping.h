@@ -54,4 +54,7 @@ Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px);   // 
 Eigen::Vector2d px_of_tissue(const View& view, const Eigen::Vector2d& p_m);  // drawing
 bool on_tissue(const View& view, const Eigen::Vector2d& p_m);                // inside the area, its edges included
 
+// The part of the screen's area in which input is on the tissue, at every place of it, also at its corners.
+ScreenArea input_area(const View& view, const ScreenArea& screen);
+
 }  // namespace palpa::scene

@@ -76,17 +76,12 @@ void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
 // beyond them nothing would answer, and nothing would show where it is.
 void place_keyboard(platform::Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
-    const scene::ScreenArea& a = app.session.state.screen;
     if (app.asked || app.view.help || app.session.trial.paused_at_s || !keys_move_indenter(app.doing)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         const scene::View& view = app.session.state.view;
-        const Eigen::Vector2d half_px =
-            (view.axes * (0.5 * view.area.size_m)).cwiseAbs().cwiseProduct(view.input_px_per_m);
-        const Eigen::Vector2d low_px = (view.centre_px - half_px).cwiseMax(Eigen::Vector2d(a.x_px, a.y_px));
-        const Eigen::Vector2d high_px =
-            (view.centre_px + half_px).cwiseMin(Eigen::Vector2d(a.x_px + a.width_px, a.y_px + a.height_px));
-        window.set_keyboard(low_px.x(), low_px.y(), high_px.x(), high_px.y(), kSpeed_m_per_s * view.px_per_m);
+        const scene::ScreenArea a = scene::input_area(view, app.session.state.screen);
+        window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * view.px_per_m);
     }
 }
 

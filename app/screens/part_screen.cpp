@@ -89,7 +89,7 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
         ImGui::PopStyleColor();
         if (design.button) paragraph(work.button[i].on ? words::kButtonOn : words::kButtonOff);
     }
-    const bool air = shown.state.touch.down && !work.touching;
+    const bool air = shown.state.pointer && !work.touching;  // also beyond the plane, where a touch is none
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.84f, 0.35f, 1.0f));
     wrapped_text(air ? words::kPressesAir : "");
     ImGui::PopStyleColor();

@@ -93,3 +93,24 @@ TEST_CASE("mapping: direct mapping is true to size where the screen's scale is k
     CHECK(make_view(fitted, kArea, known).px_per_m == close_to(0.94 * 700 / 0.10));
     CHECK(std::isnan(make_view({}, kArea, {1000, 700}).scale));
 }
+
+TEST_CASE("mapping: every corner of the area that input has is on the tissue, and a little beyond it is not") {
+    for (const MappingKind kind : {MappingKind::direct, MappingKind::indirect}) {
+        for (int turn = 0; turn < 8; ++turn) {
+            Mapping mapping;
+            mapping.kind = kind;
+            mapping.rotate_deg = 90 * (turn % 4);
+            mapping.flip = turn >= 4;
+            const ScreenArea screen{1013.7, 799.3, 241.9, 1.3};
+            const View view = make_view(mapping, kArea, screen);
+            const ScreenArea a = input_area(view, screen);
+            for (int corner = 0; corner < 4; ++corner) {
+                const Eigen::Vector2d side(corner % 2, corner / 2);
+                const Eigen::Vector2d px =
+                    Eigen::Vector2d(a.x_px, a.y_px) + side.cwiseProduct(Eigen::Vector2d(a.width_px, a.height_px));
+                CHECK(on_tissue(view, tissue_of_px(view, px)));
+                CHECK_FALSE(on_tissue(view, tissue_of_px(view, px + 0.01 * (2.0 * side - Eigen::Vector2d::Ones()))));
+            }
+        }
+    }
+}
